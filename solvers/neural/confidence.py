@@ -23,7 +23,7 @@ ITERATIONS = 16  # of the minimisation of the variational functional
 
 @dataclass(frozen=True)
 class Confidence:
-    """Confidence in the grid of a neural operator."""
+    """The expected error of a neural operator's grid, and whether the grid is accepted."""
 
     expected_error: float  # expected relative L2 distance from the imitated solution; infinite if unknown
     threshold: float  # largest expected error of accepted grids
@@ -31,9 +31,10 @@ class Confidence:
 
 
 def expected_error(grid: Grid, boundary: Boundary, goal: Goal) -> float:
-    """Return the expected relative L2 distance of `grid` from the ``winslow`` or ``variational`` grid.
+    """Return the estimated relative L2 error of `grid` against the converged grid of the method `goal`.
 
-    The error is infinite if the solver cannot start from `grid`.
+    The estimate is the change of `grid` by a few iterations of that method, ``winslow`` or ``variational``.
+    It is infinite if the method cannot start from `grid`.
     """
     counts = tuple(min(n, MOST) for n in (boundary.ni, boundary.nj))
     if counts != (boundary.ni, boundary.nj):

@@ -35,12 +35,12 @@ def infer_many(
 ) -> list[Solution]:
     """Return a grid inside each boundary by a shipped model, or by one that `meshonet train` made.
 
-    `model`: name of a shipped model, path of a ``.safetensors`` file, ``base`` for the conformal solver, or
-    None for the default of the topology; `polish`: steps after the network (`operator.Operator.solve`);
-    `device`: where torch computes the grids; ``auto`` polish then means 3 Picard steps of strip operators and
-    no step of quad operators; `fallback`: whether grids without accepted `confidence` are replaced by grids
-    of the method that the network imitates. Raises InputError: no such model or device; a model that cannot
-    be read or does not suit a boundary.
+    `model` is the name of a shipped model, the path of a ``.safetensors`` file, or ``base`` for the conformal
+    solver; None is the default of the topology. `polish`: see `operator.Operator.solve`. `device` is where
+    torch computes the grids; ``auto`` polish then means 3 Picard steps for airfoil operators, none for
+    others. With `fallback`, grids without accepted `confidence` are replaced by grids of the method that the
+    network imitates. Raises InputError if there is no such model or device, or if the model does not suit a
+    boundary.
     """
     named = None if model is None else load(model)
     solutions: dict[int, Solution] = {}
@@ -91,7 +91,7 @@ def _solved(boundary: Boundary, goal: Goal) -> Solution:
 
 
 def grid_of_body(boundary: Boundary, why: str) -> Solution | None:
-    """Return the grid of a compact body by the model `hole-o`, with the note `why`; None if it is folded."""
+    """Return the grid of a compact body by the model `hole-o`, noting `why`; None if it has folded cells."""
     from meshonet.solvers.algebraic.resample.grids import thinned
     from meshonet.solvers.neural.quad.encoding import LATENT
     from meshonet.solvers.neural.quad.o_grids import compact
@@ -123,9 +123,9 @@ def _refuse(**parameters: object) -> None:
 
 @dataclass(frozen=True)
 class OperatorMethod:
-    """The method ``operator``: grids by `infer_many`; fields are the parameters of `infer_many`.
+    """The method ``operator``, which makes grids by `infer_many`; fields are the parameters of `infer_many`.
 
-    Raises InputError: `fallback` is given for a model that is no network.
+    Raises InputError if `fallback` is set and `model` is ``base``, which has no network.
     """
 
     model: str | None = None
@@ -142,7 +142,7 @@ class OperatorMethod:
 
     @cached_property
     def together(self) -> Topology | None:
-        """The topology of boundaries that are computed in batches; None if they are computed one by one."""
+        """The topology whose boundaries are computed in batches; None if all are computed one by one."""
         if self.device is None and self.model == BASE:
             return None  # no network
         if self.model is not None and makes_volumes(self.model):
@@ -155,5 +155,5 @@ class OperatorMethod:
         problems: Sequence[Boundary],
         start: Sequence[Grid] | None = None,  # noqa: ARG002 - networks start from nothing
     ) -> list[Solution]:
-        """Return a solution for each of the boundaries, in batches where the network allows it."""
+        """Return a solution for each of the boundaries `problems`, in batches if the network allows it."""
         return infer_many(problems, self.model, self.polish, self.answer, self.device, fallback=self.fallback)

@@ -18,7 +18,7 @@ OURS = "use a file made by meshonet train"  # remedy for a file that is no model
 
 
 class Kind(NamedTuple):
-    """A kind of model file: in the header, ``kind`` is `text`, and the entry named `key` is `version`."""
+    """A kind of model file; its header has `text` under the key ``kind``, `version` under the key `key`."""
 
     text: str
     key: str
@@ -37,8 +37,8 @@ KINDS = {kind.text: kind for kind in (STRIP, QUAD, PAPER, VOLUME)}
 def read_model(path: Path) -> tuple[Kind, dict[str, Any], dict[str, NDArray[Any]]]:
     """Return the kind, the header and the arrays of a model file.
 
-    Raises InputError: the file is no safetensors file, no model of meshonet, or a model of another version;
-    an array is not finite.
+    Raises InputError if the file is no safetensors file or no model of this version of meshonet, or if an
+    array is not finite.
     """
     header, arrays = read_tensors(path)
     kind = KINDS.get(str(header.get("kind")))
@@ -50,7 +50,7 @@ def read_model(path: Path) -> tuple[Kind, dict[str, Any], dict[str, NDArray[Any]
 
 
 def read_tensors(path: Path) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
-    """Return the header and the arrays of any safetensors file; sizes and finiteness are checked."""
+    """Return header and arrays of a safetensors file. Raises InputError: another file; values not finite."""
     from safetensors import SafetensorError, safe_open
 
     source = str(path)
@@ -81,10 +81,10 @@ def write_model(
     figures: Mapping[str, Any],
     **facts: Any,
 ) -> None:
-    """Write a model file for `read_model`, whole or not at all, with each array in its own precision.
+    """Write a model file for `read_model`, whole or not at all; each array keeps its precision.
 
-    `recipe`: settings of the training; `figures`: errors on held-out shapes; `facts`: further entries of the
-    header, which depend on the kind of model.
+    `recipe` has the training settings, `figures` the error measures on held-out shapes. `facts` are further
+    entries of the header.
     """
     from safetensors.numpy import save
 

@@ -17,7 +17,7 @@ BATCH = 64  # most boundaries that are solved together, for the memory that they
 
 @dataclass(frozen=True)
 class Operator(ABC):
-    """A trained operator; `meshonet.solvers.neural.registry.load` returns one by name or path."""
+    """Base class of trained neural operators; `meshonet.solvers.neural.registry.load` returns one."""
 
     batched: ClassVar[bool] = True  # many boundaries take less time together than one by one
 
@@ -28,10 +28,10 @@ class Operator(ABC):
     @classmethod
     @abstractmethod
     def of_file(cls, name: str, header: Mapping[str, Any], arrays: dict[str, Floats]) -> Self:
-        """Return the operator of a file's header and arrays.
+        """Return the operator from the header and the arrays of a model file.
 
-        Raises InputError, KeyError, IndexError, ValueError, TypeError, AttributeError, OverflowError: header
-        or arrays do not belong to an operator of this class.
+        Raises InputError, KeyError, IndexError, ValueError, TypeError, AttributeError or OverflowError if
+        header or arrays do not belong to an operator of this class.
         """
 
     @abstractmethod
@@ -44,22 +44,21 @@ class Operator(ABC):
         dtype: str = "float64",
         threads: int = 1,
     ) -> list[Solution]:
-        """Return a grid inside each boundary; it may be folded (see `meshonet.solvers.pipeline.fallback`).
+        """Return a grid inside each boundary; it may have folded cells.
 
-        `polish`: number of steps after the network, for operators with such steps; `paste`: whether edges are
-        replaced by the given boundary, for networks that do not reproduce it; `dtype`: arithmetic of the quad
-        network, ``float64`` or ``float32`` (grids differ by about 1e-6); `threads`: number of batches of the
-        quad network that run at the same time, without effect on grids. Raises InputError: a boundary of
-        another topology.
+        `polish` is the number of improving steps after the network. `paste`: whether given boundary nodes
+        replace predicted ones. `dtype` is the arithmetic of U-Nets, ``float64`` or ``float32``; grids differ
+        by about 1e-6. `threads` is the number of batches of U-Nets that run at the same time. Operators
+        ignore parameters that do not apply to them. Raises InputError if a boundary has another topology.
         """
 
     @property
     def goal(self) -> Goal:
-        """The method whose grids the operator imitates."""
+        """Name of the method whose grids the operator imitates."""
         return "winslow"
 
     def expected_error(self, boundary: Boundary, solution: Solution) -> float:
-        """Return the expected relative L2 error of a solution of `solve`; see `confidence.expected_error`."""
+        """Return the estimated relative L2 error of a result of `solve`; see `confidence.expected_error`."""
         return expected_error(solution.grid, boundary, self.goal)
 
     def check(self, boundaries: Sequence[Boundary]) -> None:
@@ -71,9 +70,9 @@ class Operator(ABC):
 
 
 def in_batches(boundaries: Sequence[Boundary], threads: int = 1) -> Iterator[list[int]]:
-    """Yield batches, as indices of at most `BATCH` boundaries with equal node counts, each boundary once.
+    """Yield lists of indices of at most `BATCH` boundaries with equal node counts; each index occurs once.
 
-    Batches with the same node counts have about equal sizes; there are enough batches for all `threads`.
+    Lists for the same node counts have about equal lengths, and are enough to occupy all `threads`.
     """
     groups: dict[tuple[int, int], list[int]] = {}
     for k, boundary in enumerate(boundaries):

@@ -31,13 +31,13 @@ OPERATORS: dict[Kind, str] = {
 
 
 def shipped() -> tuple[str, ...]:
-    """Return the names of the models in the package."""
+    """Return the names of the models that the package contains."""
     files = {path.stem for path in FOLDER.glob("*.safetensors")}
     return tuple(sorted(files | {name for name, (file, _) in HEADS.items() if file in files}))
 
 
 def model_path(name: str) -> Path:
-    """Return the file of a model by name or path. Raises InputError when there is none."""
+    """Return the file of the model with this name or path. Raises InputError if there is none."""
     if name in shipped():
         return FOLDER / f"{HEADS.get(name, (name, 0))[0]}.safetensors"
     path = Path(name)
@@ -51,10 +51,9 @@ def model_path(name: str) -> Path:
 
 
 def load(name: str | Path) -> Operator:
-    """Return a shipped operator by name, the operator of a file by path, or ``base``.
+    """Return the operator of a shipped model by name, or of a model file by path; ``base`` has no network.
 
-    Raises InputError: there is no such model; the file is no model file, or its arrays do not match its
-    model.
+    Raises InputError if there is no such model, if the file is no model file, or if its arrays do not match.
 
     >>> operator = load("quad-general")
     >>> operator.name, operator.topology
@@ -76,7 +75,7 @@ def load(name: str | Path) -> Operator:
 def makes_volumes(name: str) -> bool:
     """Return whether a model is for volumes inside six faces (`meshonet.solvers.neural.volumes`).
 
-    Raises InputError: no such model; a file that is not a model file.
+    Raises InputError if there is no such model, or if the file is no model file.
     """
     return name not in (BASE, *shipped()) and read_model(model_path(name))[0] == VOLUME
 
@@ -100,7 +99,7 @@ def _load(path: Path, _modified: int) -> Operator:
 
 
 def described(name: str) -> dict[str, Any]:
-    """Return the description of a shipped model: name, topology, recipe, figures, parameter count, file."""
+    """Return name, topology, training settings, errors, parameter count and file of a shipped model."""
     path = model_path(name)
     _, header, arrays = read_model(path)
     facts: dict[str, Any] = {key: header[key] for key in ("topology", "recipe", "figures") if key in header}

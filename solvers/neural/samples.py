@@ -15,7 +15,7 @@ from meshonet.geometry.errors import InputError
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """Solved grids of one size and topology; n is their number."""
+    """Solved grids of the same size and topology, with names and splits."""
 
     nodes: Floats  # (n, ni, nj, 2), any unit of length
     topology: Topology  # ``quad`` or ``o``
@@ -47,7 +47,7 @@ class Samples:
         return Samples(self.nodes[chosen], self.topology, names, splits, self.parameters[chosen])
 
     def where(self, split: str) -> NDArray[np.intp]:
-        """Return the indices of the samples of a split; samples without a split count as ``train``."""
+        """Return the indices of the samples in a split; samples without a split belong to ``train``."""
         return np.array([k for k, own in enumerate(self.splits) if (own or "train") == split], dtype=np.intp)
 
     def fingerprint(self) -> str:
@@ -63,7 +63,7 @@ def edges(nodes: Floats, topology: Topology, name: str = "") -> Boundary:
 
 
 def gathered(grids: Iterable[Grid]) -> Samples:
-    """Return `grids` as samples. Raises InputError: no grid, or other sizes or topologies; C grids."""
+    """Return `grids` as samples. Raises InputError: no grid, unequal sizes or topologies, C grids."""
     rows: list[Floats] = []
     facts: list[tuple[str, str, float]] = []
     first: Grid | None = None

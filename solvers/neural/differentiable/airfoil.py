@@ -27,11 +27,11 @@ CLOSED = 1e-2  # what is left of an angle's difference (radians) where a corner 
 
 
 class AirfoilGrids:
-    """The airfoil operator as a differentiable function; folded cells are not repaired.
+    """The neural operator for airfoils as a differentiable function; folded cells are not repaired.
 
-    `model`: a strip operator, its name or path, or ``base`` for the harmonic base without a network;
-    `polish`: number of Picard steps after the network, or ``converged``; `device`: torch's name of the
-    device. Raises InputError: the model does not exist, cannot be read, or is no strip operator.
+    `model` is an operator for airfoils, its name or its path, or ``base``: no network, but the harmonic grid.
+    `polish` is the number of Picard steps after that, or ``converged``. `device` is torch's name of the
+    device. Raises InputError if the model does not exist, cannot be read, or is not for airfoils.
     """
 
     def __init__(
@@ -90,20 +90,20 @@ def conformal(south: Tensor, north: Tensor, nj: int, *, failed: Failed = "raise"
 
     Parameters
     ----------
-    south, north : (..., ni, 2) nodes of the bodies and of the far fields, clockwise from the trailing edge,
-        the first repeated at the end.
+    south, north : (..., ni, 2) nodes of the bodies (south) and of their far fields (north), clockwise
+        from the trailing edge; the last node repeats the first.
     nj : int
-        Node count from wall to far field.
+        Number of nodes from wall to far field.
     failed : {"raise", "nan"}
-        As in `winslow`.
+        With "nan", bodies without a grid get NaN nodes in place of SolverError.
 
     Raises
     ------
     InputError
-        Tensors of other shapes, of unequal counts or of different dtypes; `nj` below 2.
+        Tensors of wrong shape, with unequal node counts or of different dtypes; `nj` below 2.
     SolverError
-        A body of the batch has no conformal lift or a coordinate that is not finite, or the equations for a
-        body do not converge. The message and the attribute ``members`` have the indices of such bodies.
+        A body has no conformal map or a coordinate that is not finite, or its equations do not converge.
+        The message and the attribute ``members`` list the indices of such bodies in the batch.
     """
     return AirfoilGrids("base", "converged", str(south.device))(south, north, nj, failed=failed)
 

@@ -13,14 +13,14 @@ TINY = 1e-300  # keeps quotients finite where a step repeats the one before
 def limit(
     step: Callable[[Tensor, Tensor], Tensor], start: Tensor, tol: Tensor, most: int
 ) -> tuple[Tensor, Tensor]:
-    """Return the limits (batch, n) of the iteration x -> step(x), and a mask (batch,) of converged members.
+    """Iterate x -> step(x) with Anderson acceleration; return the limits (batch, n) and a convergence mask.
 
     Parameters
     ----------
-    step : ``step(x, members)`` returns the next iterates of `members` (m,) from their iterates `x` (m, n).
-    start : (batch, n) first values.
+    step : ``step(x, members)`` returns the next iterates of the batch members `members` (m,) from `x` (m, n).
+    start : (batch, n) initial values.
     tol : (batch,) a member has converged if no value changes by more than this in a step.
-    most : largest number of steps.
+    most : greatest number of steps.
     """
     limits, far = start.clone(), torch.ones(len(start), dtype=torch.bool, device=start.device)
     moving, x = torch.arange(len(start), device=start.device), start

@@ -10,9 +10,10 @@ from meshonet.geometry.errors import InputError
 
 
 def check_sides(least: int, nj: int = 2, **sides: Tensor) -> None:
-    """Raise InputError unless `sides` (..., n, 2), in opposite pairs, can bound a batch of grids.
+    """Raise InputError unless `sides`, each a tensor (..., n, 2), can bound a batch of grids.
 
-    `least`: smallest number of nodes of a side; `nj`: for bodies, number of nodes from wall to far field.
+    Opposite sides follow one another. `least` is the least number of nodes of a side. `nj` is the number of
+    nodes from wall to far field of grids around bodies.
     """
     names = list(sides)
     first = sides[names[0]]
@@ -47,7 +48,7 @@ _CLOSE = 1e-5  # corners of two sides nearer than this fraction of the extent co
 
 
 def check_corners(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> None:
-    """Raise InputError, with the grid's index, if sides do not meet at corners; no check under `vmap`."""
+    """Raise InputError if sides of a grid do not meet at a corner; under `torch.vmap` nothing is checked."""
     pairs = {
         "south and west": (south[..., 0, :], west[..., 0, :]),
         "south and east": (south[..., -1, :], east[..., 0, :]),
@@ -73,10 +74,11 @@ def batched(
     make: Callable[..., Tensor], sides: Sequence[Tensor], nj: int | None = None,
     dtype: torch.dtype = torch.float64, device: str | torch.device | None = None,
 ) -> Tensor:  # fmt: skip
-    """Return the nodes (..., ni, nj, 2) that `make` returns for `sides` (..., n, 2) with any batch axes.
+    """Return the nodes that `make` returns for `sides`, but for any number of batch axes.
 
-    `make` takes sides (batch, n, 2) of type `dtype` on `device`, and returns nodes (batch, ni, nj, 2). The
-    result has the type and the device of `sides`. For bodies, `nj` is the node count from wall to far field.
+    Each of `sides` is a tensor (..., n, 2). `make` takes sides (batch, n, 2) of type `dtype` on `device`, and
+    returns nodes (batch, ni, nj, 2). The result (..., ni, nj, 2) has the type and the device of `sides`. For
+    grids around bodies, `nj` is the number of nodes from wall to far field.
     """
     if torch.is_inference_mode_enabled():  # solvers differentiate, which tensors of this mode do not allow
         with torch.inference_mode(False), torch.no_grad():
@@ -91,10 +93,9 @@ def batched(
 
 
 def unit_of(values: Tensor) -> Tensor:
-    """Return, for each member of `values` (batch, ...), a power of 2 near the maximum minus the minimum.
+    """Return for each batch member of `values` (batch, ...) a power of 2 near its range, maximum - minimum.
 
-    The result (batch, 1, ...) broadcasts with `values`. Division of `values` by it is exact, and fourth
-    powers of the quotients neither overflow nor vanish.
+    The shape (batch, 1, ...) of the result broadcasts with `values`. Division by it is exact.
     """
     flat = values.detach().flatten(1)
     power = torch.frexp(flat.amax(1) - flat.amin(1)).exponent
@@ -102,12 +103,12 @@ def unit_of(values: Tensor) -> Tensor:
 
 
 def as_complex(planes: Tensor) -> Tensor:
-    """Return planes (batch, 2, ...) of x and y as x + iy."""
+    """Return the complex numbers x + iy (batch, ...) of coordinates `planes` (batch, 2, ...)."""
     return torch.complex(planes[:, 0], planes[:, 1])
 
 
 def as_planes(z: Tensor) -> Tensor:
-    """Return complex numbers (batch, ...) as planes (batch, 2, ...) of x and y."""
+    """Return the coordinates x and y (batch, 2, ...) of complex numbers `z` (batch, ...)."""
     return torch.stack([z.real, z.imag], 1)
 
 

@@ -24,15 +24,15 @@ Of two opposite offsets only one is stored: that with positive di, or, if di is 
 
 @dataclass(frozen=True)
 class Functional:
-    """The functional of `energy.functional` for a batch."""
+    """The variational functional of `meshonet.solvers.energy.functional` in torch, for a batch of grids."""
 
     shape: float  # weight w of the angle term, 0 to 1
     smoothness: Tensor  # (batch,) weights β of the lengths' term
 
     def value(self, nodes: Tensor, aspect: Tensor) -> Tensor:
-        """Return the value E (batch,) of the functional for `nodes` (batch, 2, ni, nj) without folded cells.
+        """Return the functional (batch,) of grids `nodes` (batch, 2, ni, nj) without folded cells.
 
-        `aspect` (batch,) is the ratio of steps along eta to steps along xi (`aspect_of`).
+        `aspect` (batch,) is the result of `aspect_of`.
         """
         g, h, jacobian = _measures(*_corners(nodes))
         along, across = self._harmonic(aspect)
@@ -45,10 +45,10 @@ class Functional:
         return energy
 
     def hessian(self, nodes: Tensor, aspect: Tensor, *, convex: bool = False) -> Stencil:
-        """Return the second derivatives of E at valid `nodes`, with `aspect` constant.
+        """Return the second derivatives of the functional with respect to `nodes`, with `aspect` constant.
 
-        With `convex` the matrix is positive definite: negative eigenvalues of cells are set to zero, and
-        differences of log lengths are linearised (Gauss-Newton).
+        `nodes` (batch, 2, ni, nj) must have no folded cells. With `convex`, return a positive definite
+        approximation.
         """
         zero = nodes.new_zeros(len(nodes), 2, 2, *nodes.shape[2:])
         offsets = ((0, 0), (0, 1), (0, 2), (1, -1), (1, 0), (1, 1), (2, 0))
@@ -136,14 +136,14 @@ def _positive_part(blocks: Tensor) -> Tensor:
 
 
 def aspect_of(nodes: Tensor) -> Tensor:
-    """Return the ratio (batch,) of the steps along eta to the steps along xi on the boundary of `nodes`."""
+    """Return the mean step between boundary nodes along eta, divided by that along xi, for each grid."""
     walls, sides = nodes[..., :: nodes.shape[3] - 1], nodes[:, :, :: nodes.shape[2] - 1]
     along, across = walls.diff(dim=2).square().mean((1, 2, 3)), sides.diff(dim=3).square().mean((1, 2, 3))
     return torch.sqrt(across / along)
 
 
 def smallest_jacobian(nodes: Tensor) -> Tensor:
-    """Return the smallest Jacobian (batch,) at a corner of a cell of `nodes` (batch, 2, ni, nj)."""
+    """Return the smallest corner Jacobian (batch,) of cells in each grid of `nodes` (batch, 2, ni, nj)."""
     return _measures(*(part[:, :4] for part in _corners(nodes)))[2].amin((1, 2, 3))
 
 

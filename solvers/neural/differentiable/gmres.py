@@ -12,11 +12,10 @@ TINY = 1e-300  # keeps quotients finite where a residual is zero
 def gmres(
     times: Callable[[Tensor], Tensor], right: Tensor, tol: float, most: int, space: int = SPACE
 ) -> Tensor:
-    """Return approximate solutions x (batch, n) of A x = `right` (batch, n).
+    """Return approximate solutions x (batch, n) of A x = `right` (batch, n) by restarted GMRES.
 
-    `times(x)` returns A x; `tol`: norm of a converged residual relative to `right`; `most`: largest number of
-    products with A, after which the last iterate is returned; `space`: dimension of the Krylov space at which
-    the iteration restarts.
+    `times(x)` returns A x. The iteration ends if the norm of the residual is at most `tol` times that of
+    `right`, or after `most` products with A. It restarts when the Krylov space has dimension `space`.
     """
     x, goal = torch.zeros_like(right), tol * right.norm(dim=1)
     rest, done = right, 0

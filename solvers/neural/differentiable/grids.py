@@ -16,18 +16,18 @@ from meshonet.solvers.neural.differentiable.winslow import Winslow
 
 
 def transfinite(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Tensor:
-    """Return the nodes (..., ni, nj, 2) of transfinite interpolation, by arc length along the sides.
+    """Return the nodes (..., ni, nj, 2) of transfinite interpolation with arc lengths as parameters.
 
     Parameters
     ----------
     south, north : (..., ni, 2) nodes along xi, from west to east.
-    west, east : (..., nj, 2) nodes along eta, from south to north; the corners are those of south and north.
+    west, east : (..., nj, 2) nodes along eta, from south to north; their ends lie on south and north.
 
     Raises
     ------
     InputError
-        Tensors of other shapes, of unequal counts, of different dtypes or not of floating-point numbers.
-        Sides that do not meet at the corners, except under `vmap`.
+        Tensors of wrong shape or of different dtypes, or opposite sides with unequal node counts.
+        Sides that do not meet at the corners (not checked under `vmap`).
     """
     return _four_sided(lambda sides: interpolated(sides, arc_lengths(sides)), south, north, west, east)
 
@@ -36,7 +36,7 @@ def winslow(
     south: Tensor, north: Tensor, west: Tensor, east: Tensor, *, coarse: int | None = None,
     failed: Failed = "raise",
 ) -> Tensor:  # fmt: skip
-    """Return the nodes (..., ni, nj, 2) that solve Winslow's equations, to rounding.
+    """Return the nodes (..., ni, nj, 2) that solve Winslow's equations up to rounding errors.
 
     Gradients are those of the converged solution; each backward pass solves one linear system.
 
@@ -44,19 +44,18 @@ def winslow(
     ----------
     south, north, west, east : as in `transfinite`.
     coarse : int, optional
-        Solve on at most this number of nodes along a direction, and interpolate the grid to all nodes of the
-        sides. The option ``--coarse`` does the same, and sweeps near kinks afterwards.
+        Greatest number of nodes per direction to solve for; the solution is then interpolated to all nodes.
     failed : {"raise", "nan"}
-        With "nan", there is no error if members have no solution: their nodes are NaN and have no gradients,
-        and the other members are solved again without them.
+        With "nan", grids of the batch that have no solution get NaN nodes in place of SolverError. NaN nodes
+        have no gradients.
 
     Raises
     ------
     InputError
-        As `transfinite`, and for `coarse` below 9.
+        As for `transfinite`; also `coarse` below 9.
     SolverError
-        The equations of a member of the batch do not converge, or it has a coordinate that is not finite. The
-        message and the attribute ``members`` have the indices of such members.
+        The equations of a grid do not converge, or one of its coordinates is not finite. The message and the
+        attribute ``members`` list the indices of such grids in the batch.
     """
     return _solved(Winslow(), coarse, failed, south, north, west, east)
 
@@ -65,26 +64,26 @@ def variational(
     south: Tensor, north: Tensor, west: Tensor, east: Tensor, *, coarse: int | None = None,
     failed: Failed = "raise",
 ) -> Tensor:  # fmt: skip
-    """Return the nodes (..., ni, nj, 2) at the optimum of the variational functional, to rounding.
+    """Return the nodes (..., ni, nj, 2) at the optimum of the variational functional, up to rounding errors.
 
     The compiled solver computes the initial grids on the CPU. Gradients are those of the optimum; each
-    backward pass solves one linear system. Weights that the solver chose are constants in gradients.
+    backward pass solves one linear system. Gradients take the weights of the functional as constants.
 
     Parameters
     ----------
     south, north, west, east : as in `transfinite`.
     coarse : int, optional
-        As in `winslow`. 65 makes all grids cheap, but only the coarse grid is then optimal.
+        As in `winslow`. The value 65 limits the cost, but then only the coarse grid is optimal.
     failed : {"raise", "nan"}
         As in `winslow`.
 
     Raises
     ------
     InputError
-        As `winslow`, and for more than about 400 x 400 nodes to solve on, whose systems need too much memory.
+        As for `winslow`; also more than about 400 x 400 nodes to solve for, which need too much memory.
     SolverError
-        No grid without folded cells was found for a member of the batch, or it has a coordinate that is not
-        finite. The message and the attribute ``members`` have the indices of such members.
+        No grid without folded cells was found for a member of the batch, or one of its coordinates is not
+        finite. The message and the attribute ``members`` list the indices of such members.
     """
     return _solved(Optimum(), coarse, failed, south, north, west, east)
 

@@ -13,35 +13,35 @@ from meshonet.solvers.neural.differentiable.members import BatchFunction, FirstD
 
 
 class Equations(Protocol):
-    """Equations for the inner nodes of four-sided grids."""
+    """Equations for the inner nodes of four-sided grids, and their adjoint."""
 
     def most(self, nodes: Tensor) -> int:
-        """Return how many members of the batch `nodes` (batch, 2, ni, nj) should be solved at once."""
+        """Return how many grids of the batch `nodes` (batch, 2, ni, nj) should be solved at once."""
         ...
 
     def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the solutions (batch, 2, ni, nj), and a coefficient (batch,) of each member's equations.
+        """Return the solutions (batch, 2, ni, nj), and their smoothness weights (batch,).
 
-        The coefficient is the weight of smoothness, or 0 in equations without one. Only the boundary nodes of
-        `nodes` are used. Raises MemberError: there is no solution.
+        The weights are 0 in equations without such a weight. Only the boundary nodes of `nodes` are used.
+        Raises MemberError if a grid has no solution.
         """
         ...
 
     def adjoint(self, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
-        """Return the derivative (batch, 2, ni, nj) of a functional of the grid by its boundary nodes.
+        """Return the derivative (batch, 2, ni, nj) of a functional of the grid by boundary nodes.
 
-        `nodes`: the solution; `number`: its coefficient from `solve`; `gradient`: the derivative of the
-        functional by all nodes as independent variables. Callers ignore the result at inner nodes.
+        `nodes` is the solution, `number` its smoothness weights from `solve`, and `gradient` the derivative
+        of the functional by all nodes as independent variables. Ignore the result at inner nodes.
         """
         ...
 
 
 class Converged(BatchFunction):
-    """The solution of equations as a function of the boundary nodes of `nodes` (batch, 2, ni, nj)."""
+    """Torch function from the boundary nodes of grids to the solution of `Equations`, with gradients."""
 
     @staticmethod
     def forward(equations: Equations, nodes: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the solutions and the coefficients of the equations, as `Equations.solve`."""
+        """Return the solutions and the smoothness weights, as `Equations.solve`."""
         unit = unit_of(nodes)
         solution, number = in_parts(equations.solve, equations.most(nodes), nodes / unit)
         return unit * solution, number
@@ -55,16 +55,16 @@ class Converged(BatchFunction):
 
     @staticmethod
     def backward(ctx: Any, gradient: Tensor, _: Tensor) -> tuple[None, Tensor]:
-        """Return the derivative with respect to the boundary nodes, zero at inner nodes."""
+        """Return None for the equations, and the derivative by `nodes`, which is zero at inner nodes."""
         return None, Adjoint.apply(ctx.equations, *ctx.saved_tensors, gradient)  # type: ignore[no-untyped-call]
 
 
 class Adjoint(FirstDerivative):
-    """The derivative of a functional by boundary nodes, from its derivative by all nodes."""
+    """Torch function from derivatives by all nodes to derivatives by boundary nodes (`Equations.adjoint`)."""
 
     @staticmethod
     def forward(equations: Equations, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
-        """Return the derivative (batch, 2, ni, nj), zero at inner nodes."""
+        """Return the derivative (batch, 2, ni, nj), which is zero at inner nodes."""
         (result,) = in_parts(
             lambda *part: (equations.adjoint(*part),),
             equations.most(nodes),

@@ -11,18 +11,18 @@ from meshonet.geometry.errors import InputError
 
 
 def in_jax(function: Callable[..., Tensor], nj: int | None = None) -> Callable[..., Any]:
-    """Return a function of `meshonet.layer` as a function of JAX arrays, with a rule for gradients.
+    """Convert a function of `meshonet.layer` to a function of JAX arrays with gradients.
 
-    `jax.grad`, `jax.vmap` and `jax.jit` apply to it. A gradient computes the grid again, because JAX keeps no
-    state of a function that it calls. Needs JAX (``pip install jax``).
+    `jax.grad`, `jax.vmap` and `jax.jit` apply to the result. `jax.grad` computes each grid again, because JAX
+    keeps no state of a function that it calls. Needs JAX (``pip install jax``).
 
     Parameters
     ----------
     function : callable
-        For four sides ``transfinite``, ``winslow``, ``variational`` or a ``QuadGrids``; for a body
-        ``conformal``, a ``BodyGrids`` or an ``AirfoilGrids``.
+        One of ``transfinite``, ``winslow``, ``variational`` and ``conformal``, or an object of the class
+        ``QuadGrids``, ``BodyGrids`` or ``AirfoilGrids``.
     nj : int, optional
-        Node count from wall to far field, for bodies.
+        Number of nodes from wall to far field, for functions that make grids around bodies.
 
     Raises
     ------

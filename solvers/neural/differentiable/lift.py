@@ -14,9 +14,9 @@ from meshonet.solvers.neural.quad.unrolled import middles
 
 @dataclass(frozen=True)
 class TorchWalls:
-    """The values F (n,) of the conformal lift on the `wall` and the `far` field (see `StripWalls`).
+    """The images of a body, `wall`, and of its far field, `far`, in a strip; see `StripWalls`.
 
-    `lift` holds the coefficients of the lift as tensors, `numpy` the same coefficients as NumPy arrays.
+    `lift` holds the coefficients of the conformal map as tensors, `numpy` holds them as NumPy arrays.
     """
 
     lift: Lift
@@ -29,11 +29,9 @@ class TorchWalls:
 
 
 def torch_walls(z: Tensor, far: Tensor) -> TorchWalls:
-    """Return the images in the strip of a body's nodes `z` (n,) and far field `far` (n,).
+    """Map a body `z` (n,) and its far field `far` (n,) conformally to a strip; return their images.
 
-    Both curves are complex and counter-clockwise.
-
-    Raises InputError: the body has no conformal lift.
+    Both curves are complex and counter-clockwise. Raises InputError if the body has no conformal map.
     """
     nodes, origin = z, z[0]
     hand, _ = handedness(as_numpy(z), as_numpy(far))

@@ -13,11 +13,9 @@ Failed = Literal["raise", "nan"]
 
 
 class MemberError(SolverError):
-    """Error: there are no grids for some members of a batch.
+    """Error: some members of a batch have no grid.
 
-    Parameters
-    ----------
-    reasons : by index of a member, from 0: problem and remedy.
+    `reasons` has problem and remedy by the index of the member.
     """
 
     members: tuple[int, ...]  # the indices
@@ -39,7 +37,7 @@ class MemberError(SolverError):
 
 
 def check_finite(*parts: Tensor) -> None:
-    """Raise MemberError for the members of `parts` (batch, ...) with a number that is not finite."""
+    """Raise MemberError for batch members with a number that is not finite in one of `parts` (batch, ...)."""
     finite = [torch.isfinite(part).flatten(1).all(1) for part in parts]
     bad = (~torch.stack(finite).all(0)).nonzero().flatten()
     if len(bad):
@@ -47,13 +45,13 @@ def check_finite(*parts: Tensor) -> None:
 
 
 def check_failed(failed: str) -> None:
-    """Raise InputError unless `failed` is one of `Failed`."""
+    """Raise InputError unless `failed` is "raise" or "nan"."""
     if failed not in ("raise", "nan"):
         raise InputError(f"failed={failed!r}", 'use "raise" or "nan"')
 
 
 def without_failed(make: Callable[..., Tensor], counts: tuple[int, int], *sides: Tensor) -> Tensor:
-    """Return the nodes (batch, ni, nj, 2) by `make` for `sides`, NaN if no grid exists; `counts`: ni, nj."""
+    """Return nodes (batch, *counts, 2) that `make` makes for `sides`; NaN for members with a MemberError."""
     left = torch.arange(len(sides[0]), device=sides[0].device)
     none = sides[0].new_full((len(left), *counts, 2), torch.nan)
     while len(left):
@@ -67,9 +65,9 @@ def without_failed(make: Callable[..., Tensor], counts: tuple[int, int], *sides:
 
 
 def in_parts(function: Callable[..., tuple[Tensor, ...]], most: int, *tensors: Tensor) -> tuple[Tensor, ...]:
-    """Return the values of `function` for a batch, computed for at most `most` members at a time.
+    """Return the values of `function` for a batch; it is called for at most `most` members at a time.
 
-    Raises MemberError, with the failed members of all parts.
+    Raises MemberError with all members for which `function` failed.
     """
     parts: list[tuple[Tensor, ...]] = []
     reasons: dict[int, tuple[str, str]] = {}
@@ -85,11 +83,11 @@ def in_parts(function: Callable[..., tuple[Tensor, ...]], most: int, *tensors: T
 
 
 class BatchFunction(torch.autograd.Function):
-    """A differentiable function of a batch; `torch.vmap` over it makes one larger batch."""
+    """Base class of torch functions of a batch; `torch.vmap` evaluates several batches as one batch."""
 
     @classmethod
     def vmap(cls, info: Any, in_dims: Any, *inputs: Any) -> Any:
-        """Return the values and the axes to map over; `inputs` that are no tensors serve all batches."""
+        """Return the values for all mapped batches, and their mapped axes (see `torch.autograd.Function`)."""
         flat, count = [], info.batch_size
         for value, dim in zip(inputs, in_dims, strict=True):
             if isinstance(value, Tensor):
@@ -103,13 +101,13 @@ class BatchFunction(torch.autograd.Function):
 
 
 class FirstDerivative(BatchFunction):
-    """A derivative that has no derivatives itself."""
+    """Base class of derivatives that cannot be differentiated again."""
 
     @staticmethod
     def setup_context(ctx: Any, inputs: tuple[Any, ...], output: Any) -> None:
-        """Keep nothing."""
+        """Keep nothing for `backward`."""
 
     @staticmethod
     def backward(ctx: Any, *gradients: Tensor) -> None:
-        """Raise NotImplementedError."""
+        """Raise NotImplementedError, because there are no second derivatives."""
         raise NotImplementedError("these grids have no second derivatives")

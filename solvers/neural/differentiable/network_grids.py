@@ -44,11 +44,11 @@ SHIPPED: dict[Topology, str] = {"quad": "quad-general", "o": "hole-o"}  # by top
 
 
 class NetworkGrids:
-    """An operator of the quad network as a differentiable function.
+    """Base class of neural operators that make grids by a U-Net, as differentiable functions.
 
-    `model`: an operator, the name of a shipped one, or the path of a file; `device`: torch's name of the
-    device; `dtype`: floating-point type of the arithmetic. Raises InputError: the model does not exist,
-    cannot be read, or makes grids of another topology.
+    `model` is an operator, the name of a shipped one, or the path of a model file. `device` is torch's name
+    of the device. `dtype` is the floating-point type of the computation. Raises InputError if the model does
+    not exist, cannot be read, or makes grids of another topology.
     """
 
     topology: ClassVar[Topology]
@@ -74,7 +74,7 @@ class NetworkGrids:
 
 
 class QuadGrids(NetworkGrids):
-    """An operator for four-sided domains, ``quad-general`` by default, as a differentiable function."""
+    """A neural operator for four-sided domains as a differentiable function; by default ``quad-general``."""
 
     topology: ClassVar[Topology] = "quad"
     remedy: ClassVar[str] = "use one of four-sided domains, or BodyGrids"
@@ -113,7 +113,7 @@ def _shares(near: Tensor, by: Tensor) -> Tensor:
 
 
 class BodyGrids(NetworkGrids):
-    """An operator for bodies, ``hole-o`` by default, as a differentiable function."""
+    """A neural operator for O grids around bodies as a differentiable function; by default ``hole-o``."""
 
     topology: ClassVar[Topology] = "o"
     remedy: ClassVar[str] = "use one for bodies"

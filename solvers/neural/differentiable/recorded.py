@@ -20,9 +20,9 @@ from meshonet.solvers.neural.differentiable.members import (
 def recorded(
     function: Callable[..., Tensor], *sides: Tensor, counts: tuple[int, int] | None = None
 ) -> Tensor:
-    """Return the value of `function`, from sides (batch, n, 2) to nodes (batch, ni, nj, 2).
+    """Return the nodes (batch, ni, nj, 2) that `function` makes for `sides` (batch, n, 2), also under `vmap`.
 
-    With `counts`, ni and nj, the nodes of members without a grid are NaN; otherwise MemberError is raised.
+    If `counts` (ni, nj) are given, members without a grid get NaN nodes; otherwise MemberError is raised.
     """
     call = partial(_of_unit_size, function)
     if counts is not None:

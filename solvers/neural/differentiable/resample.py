@@ -16,7 +16,7 @@ Sides = tuple[Tensor, ...]  # south, north (batch, 2, ni), west and east (batch,
 def interpolated(sides: Sides, laws: tuple[Tensor, ...]) -> Tensor:
     """Return nodes (batch, 2, ni, nj) by transfinite interpolation between `sides`.
 
-    `laws`: parameters of the nodes on the four sides, 0 to 1, (batch, n) each.
+    `laws` has, for each side, the parameters (batch, n) of its nodes, from 0 to 1.
     """
     south, north, west, east = sides
     s, n = (law[:, 1:-1, None] for law in laws[:2])
@@ -33,7 +33,7 @@ def interpolated(sides: Sides, laws: tuple[Tensor, ...]) -> Tensor:
 
 
 def with_rim(sides: Sides, inner: Tensor) -> Tensor:
-    """Return nodes (batch, 2, ni, nj): the nodes `inner` (batch, 2, ni-2, nj-2) with `sides` around them."""
+    """Return nodes (batch, 2, ni, nj): `inner` (batch, 2, ni-2, nj-2) surrounded by the nodes of `sides`."""
     south, north, west, east = sides
     rows = torch.cat([south[:, :, 1:-1, None], inner, north[:, :, 1:-1, None]], 3)
     return torch.cat([west[:, :, None], rows, east[:, :, None]], 2)
@@ -54,7 +54,7 @@ def arc_lengths(sides: Sides) -> tuple[Tensor, ...]:
 def refined(coarse: Tensor, sides: tuple[Tensor, ...]) -> Tensor:
     """Return the nodes (batch, 2, ni, nj) inside `sides`, interpolated from `coarse` (batch, 2, m, n).
 
-    `sides`: south, north (batch, 2, ni), west, east (batch, 2, nj).
+    `sides` are south and north (batch, 2, ni), then west and east (batch, 2, nj).
     """
     nodes = _evaluated(coarse, sides)
     where = folded(nodes.detach()).nonzero()[:, 0]
@@ -97,9 +97,9 @@ def _evaluated(coarse: Tensor, sides: tuple[Tensor, ...], curved: Tensor | None 
 
 
 def inwards(planes: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-    """Return the weights (.., m, n) with which displacements of the four sides move the inner nodes.
+    """Return weights (.., m, n) for south, north, west and east; they are 1 on the side and decay inwards.
 
-    The order is south, north, west, east (`algebraic.resample.quad`). `planes` (.., 2, m, n) are the nodes.
+    A displacement of the side moves inner nodes by these fractions. `planes` (.., 2, m, n) are the nodes.
     """
     south, north = _both(planes)
     west, east = (share.mT for share in _both(planes.mT))
@@ -132,6 +132,6 @@ def folded(nodes: Tensor) -> Tensor:
 
 
 def between(values: Tensor, n: int) -> Tensor:
-    """Return `values` (..., m) interpolated linearly at n uniform places (..., n), as `spline.between`."""
+    """Interpolate `values` (..., m) at uniform places linearly to `n` uniform places; return (..., n)."""
     m = values.shape[-1]
     return values if m == n else values @ array_like(acute.linear(m, n), values, torch).mT

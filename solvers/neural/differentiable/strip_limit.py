@@ -23,19 +23,19 @@ TOGETHER = 8  # members solved at once on a CPU, so that they fit in its cache
 
 
 def picard(c: Tensor) -> Tensor:
-    """Return the Fourier modes (batch, modes, LEVELS) of grids in the strip, `c`, after a Picard step."""
+    """Take one Picard step for Winslow's equations from Fourier modes `c` (batch, modes, LEVELS) of grids."""
     return _stepped(c.mT).mT
 
 
 class Settled(torch.autograd.Function):
-    """The Fourier modes (batch, modes, LEVELS) that solve Winslow's equations, from initial modes.
+    """Torch function from initial Fourier modes (batch, modes, LEVELS) to a solution of Winslow's equations.
 
-    A solution c satisfies c = start + smoothing (Picard(c) - start): the highest modes remain near the start.
+    The highest modes stay near the initial ones: the solution c is start + smoothing (Picard(c) - start).
     """
 
     @staticmethod
     def forward(ctx: Any, start: Tensor) -> Tensor:
-        """Return the limit. Raises MemberError: a member does not converge."""
+        """Return the limit of Picard steps. Raises MemberError if a member does not converge."""
         (levels,) = in_parts(_limit, _together(start), start.mT.contiguous())
         ctx.save_for_backward(start, levels)
         return levels.mT
@@ -43,7 +43,7 @@ class Settled(torch.autograd.Function):
     @staticmethod
     @once_differentiable
     def backward(ctx: Any, gradient: Tensor) -> Tensor:
-        """Return the derivative with respect to initial Fourier modes, by a linear fixed-point iteration."""
+        """Return the derivative with respect to the initial Fourier modes."""
         start, levels = ctx.saved_tensors
         (result,) = in_parts(_pulled, _together(start), start.mT.contiguous(), levels, gradient.mT)
         return result.mT

@@ -40,9 +40,9 @@ class Optimum:
     """The equations of the variational optimum: the gradient of the functional is zero at inner nodes."""
 
     def most(self, nodes: Tensor) -> int:
-        """Return how many members can be solved at once within the memory for Cholesky factors.
+        """Return how many grids can be solved at once; their Cholesky factors must fit into memory.
 
-        Raises InputError: the factor of a single member is too large.
+        Raises InputError if the factor of one grid is too large.
         """
         ni, nj = nodes.shape[2:]
         if storage(ni, nj) > LARGEST:
@@ -51,7 +51,7 @@ class Optimum:
         return FACTORS[nodes.is_cuda] // storage(*nodes.shape[2:])
 
     def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the optimum, and the weight (batch,) of the edge lengths."""
+        """Return the optimal grids (batch, 2, ni, nj), and the weights (batch,) of their smoothness term."""
         check_finite(nodes)
         starts, weights = zip(*_compiled(nodes.detach().cpu().numpy()), strict=True)
         smoothness = torch.tensor(weights, dtype=nodes.dtype, device=nodes.device)
@@ -59,7 +59,7 @@ class Optimum:
         return newton(nodes + bordered(inner(start - nodes)), smoothness), smoothness
 
     def adjoint(self, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
-        """Return the derivative of a functional with respect to the boundary nodes of an optimum."""
+        """Return the derivative of a functional with respect to the boundary nodes of optimal grids."""
         functional = Functional(Weights().shape, number)
         with torch.enable_grad():
             x = nodes.detach().requires_grad_()
@@ -70,9 +70,9 @@ class Optimum:
 
 
 def newton(nodes: Tensor, smoothness: Tensor) -> Tensor:
-    """Return the optimum (batch, 2, ni, nj) from valid `nodes` near it.
+    """Return the optimal grids (batch, 2, ni, nj) near `nodes`, which must have no folded cells.
 
-    Raises MemberError, with the members that have not converged.
+    `smoothness` (batch,) is β of the functional. Raises MemberError with the grids that do not converge.
     """
     nodes = nodes.clone()
     moving = torch.arange(len(nodes), device=nodes.device)
@@ -171,11 +171,10 @@ def _compiled(batch: Floats) -> list[tuple[Floats, float]]:
 
 
 class BlockCholesky:
-    """The Cholesky factor of the matrix of a nine-point stencil at the inner nodes.
+    """The Cholesky factors of a batch of matrices that are given as stencils at inner nodes.
 
-    `positive` (batch,): whether the matrix of a member is positive definite, so that the factor exists.
-    Two grid lines along the direction with fewer nodes are one block. The work for m x n nodes, n the smaller
-    count, is about 300 m n³ operations. Golub and Van Loan, Matrix Computations (2013), section 4.5.
+    `positive` (batch,) tells which matrices are positive definite, so that they have a factor. Golub and Van
+    Loan, Matrix Computations (2013), section 4.5.
     """
 
     def __init__(self, stencil: Stencil) -> None:
@@ -195,7 +194,7 @@ class BlockCholesky:
             self.positive &= failed == 0
 
     def solve(self, right: Tensor) -> Tensor:
-        """Return the solutions (batch, 2, mi, mj) at inner nodes for right sides `right` of this shape."""
+        """Return the solutions (batch, 2, mi, mj) for right-hand sides `right` of the same shape."""
         right = right.mT if self._turned else right
         rows = list(_by_blocks(right).unbind(1))
         for k, factor in enumerate(self._factors):
@@ -213,7 +212,7 @@ class BlockCholesky:
 
 
 def storage(ni: int, nj: int) -> int:
-    """Return the approximate number of bytes of a factorisation for ni x nj nodes, per member of a batch."""
+    """Return the approximate size in bytes of the Cholesky factor for one grid with ni x nj nodes."""
     return 256 * max(ni, nj) * min(ni, nj) ** 2
 
 

@@ -23,14 +23,14 @@ PRODUCTS = 40, 400  # with the matrix at the most: for a step, for gradients
 
 
 class Winslow:
-    """Winslow's equations as `implicit.Equations`; they are the same for all members of a batch."""
+    """Winslow's equations and their adjoint, as `implicit.Equations`."""
 
     def most(self, nodes: Tensor) -> int:
-        """Return how many members to solve at once; on a CPU, as many Krylov spaces as fit into the cache."""
+        """Return how many grids to solve at once; on a CPU, their Krylov spaces fit into the cache."""
         return len(nodes) if nodes.is_cuda else MOST // nodes[0].numel()
 
     def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the solutions (batch, 2, ni, nj), and zeros (batch,): members have the same equations."""
+        """Return the solutions (batch, 2, ni, nj), and zeros (batch,) in place of smoothness weights."""
         check_finite(nodes)
         return nested(nodes), nodes.new_zeros(len(nodes))
 
@@ -46,7 +46,7 @@ class Winslow:
 
 
 def residual(nodes: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-    """Return, at inner `nodes`, the left side α x_ξξ - 2 β x_ξη + γ x_ηη of Winslow's equations, α and γ."""
+    """Return the left side α x_ξξ - 2 β x_ξη + γ x_ηη of Winslow's equations at inner nodes, and α and γ."""
     return left_side(_derivatives(nodes), _dot)
 
 
@@ -65,7 +65,7 @@ def _dot(a: Tensor, b: Tensor) -> Tensor:
 
 
 def nested(nodes: Tensor) -> Tensor:
-    """Return the solution with the boundary nodes of `nodes` (batch, 2, ni, nj), by nested iteration."""
+    """Solve Winslow's equations inside the boundary of `nodes` (batch, 2, ni, nj), on coarse grids first."""
     sides = nodes[..., 0], nodes[..., -1], nodes[:, :, 0], nodes[:, :, -1]
     laws = arc_lengths(sides)
     sizes = [(nodes.shape[2], nodes.shape[3])]
@@ -90,10 +90,10 @@ def nested(nodes: Tensor) -> Tensor:
 
 
 def newton(nodes: Tensor, tol: float, *, strict: bool = True) -> Tensor:
-    """Return the solution of Winslow's equations near `nodes` (batch, 2, ni, nj).
+    """Solve Winslow's equations by Newton's method from the grids `nodes` (batch, 2, ni, nj).
 
-    A grid of the batch has converged if its preconditioned residual is at most `tol` times its extent. Raises
-    MemberError, if `strict`, with the grids that have not converged.
+    A grid has converged if its preconditioned residual is at most `tol` times its extent. If `strict`, raises
+    MemberError with the grids that do not converge.
     """
     nodes = nodes.clone()
     extent = (nodes.amax((2, 3)) - nodes.amin((2, 3))).amax(1)
@@ -165,9 +165,9 @@ class _Linearised:
 
 
 class Separable:
-    """The inverse of a separable operator near α u_ξξ + γ u_ηη; `alpha`, `gamma`: (batch, 1, mi, mj).
+    """Fast solver for a separable approximation of the operator α u_ξξ + γ u_ηη.
 
-    γ/α is approximated by a product p(ξ) q(η); eigenvectors in both directions diagonalise u_ξξ / p + q u_ηη.
+    `alpha` and `gamma` (batch, 1, mi, mj) are α and γ. The ratio γ/α is approximated by a product p(ξ) q(η).
     Lynch, Rice and Thomas, Numer. Math. 6 (1964) 185-199.
     """
 

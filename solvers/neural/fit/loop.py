@@ -24,7 +24,7 @@ FREE = ("rate",)  # settings that may change when a run is resumed: a smaller ra
 class Task(nn.Module):
     """A model with its training set; parameters and data are on one device.
 
-    `count` is the number of training shapes, `parts` are the names of the parts of the loss.
+    `count` is the number of training shapes. `parts` has the names of the terms of the loss.
     """
 
     count: int
@@ -32,33 +32,33 @@ class Task(nn.Module):
 
     @abstractmethod
     def forward(self, rows: Tensor, step: int) -> Tensor:
-        """Return the weighted parts of the loss, each a mean over the training shapes with indices `rows`.
+        """Return the weighted terms of the loss, averaged over the training shapes with indices `rows`.
 
         `step` seeds random draws, so that all processes and resumed runs draw the same numbers.
         """
 
     def differentiate(self, parts: Tensor, team: Team) -> None:  # noqa: ARG002 - for those who average themselves
-        """Set the gradients of the parameters for the weighted parts of the loss."""
+        """Compute the gradients of the parameters for the loss, which is the sum of its terms `parts`."""
         parts.sum().backward()
 
     def validate(self) -> dict[str, float]:
-        """Return ``loss`` and other errors on held-out shapes, by name; without such shapes, {}."""
+        """Return errors on held-out shapes by name, ``loss`` among them; {} if no shapes are held out."""
         return {}
 
     @abstractmethod
     def figures(self, epoch: int) -> dict[str, Any]:
-        """Return errors and other figures of the model on held-out shapes, after `epoch` epochs."""
+        """Return error measures on held-out shapes, by name; `epoch` is the number of epochs done."""
 
     @abstractmethod
     def write(self, path: Path, *, recipe: Mapping[str, Any], figures: Mapping[str, Any]) -> None:
-        """Write the model file."""
+        """Write the model file with the training settings `recipe` and the error measures `figures`."""
 
 
 @dataclass(frozen=True)
 class Run:
     """A training task and its settings.
 
-    `recipe`: settings stored in the model file; `identity`: further settings that a resumed run must repeat.
+    `recipe` has settings that are stored in the model file. A resumed run must repeat these and `identity`.
     """
 
     task: Task
@@ -68,7 +68,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Progress:
-    """Progress of a run: figures of the epochs since the last report."""
+    """Progress of a run: losses and times of the epochs since the last report."""
 
     epoch: int
     epochs: int
@@ -106,11 +106,11 @@ def fit(
 ) -> int:
     """Train `task` in place, and return the epoch from which its final weights come.
 
-    With `plan.patience` these are the weights with the least held-out loss. `checkpoint`: file that is
-    written every `plan.checkpoint_every` epochs, and from which `resume` starts; `facts`: settings, with
-    ``model``, that must equal those of the checkpoint; `report`: called every `plan.log_every` epochs and at
-    the end. Raises InputError: a checkpoint of other settings; patience without held-out shapes. Raises
-    SolverError: a loss or weight that is not finite; too little memory. The last checkpoint is kept.
+    With `plan.patience` the final weights are those with the least held-out loss. The file `checkpoint` is
+    written every `plan.checkpoint_every` epochs. With `resume` training continues from it; then its settings
+    must equal `facts`. `report` is called every `plan.log_every` epochs and at the end. Raises InputError if
+    the settings differ, or if patience lacks held-out shapes. Raises SolverError if a loss or weight is not
+    finite, or if memory is too small; the last checkpoint is then kept.
     """
     trained = list(task.parameters())
     optimiser: torch.optim.Optimizer = torch.optim.Adam(trained, plan.rate, fused=True)
@@ -225,12 +225,12 @@ def _progress(
 
 
 def beside(output: Path) -> Path:
-    """Return the path of the checkpoint of a model file."""
+    """Return the path of the checkpoint that belongs to the model file `output`."""
     return output.with_name(output.name + ".checkpoint")
 
 
 def save_checkpoint(path: Path, state: Mapping[str, Any]) -> None:
-    """Replace the checkpoint at `path` atomically; raise SolverError instead if a weight is not finite."""
+    """Replace the checkpoint at `path` by `state`; if a weight is not finite, raise SolverError instead."""
     for name, value in state["task"].items():
         if not torch.isfinite(value).all():
             raise SolverError(f"{name} is not finite after epoch {state['epoch']}; {SLOWER}")
@@ -243,9 +243,9 @@ def save_checkpoint(path: Path, state: Mapping[str, Any]) -> None:
 
 
 def load_checkpoint(path: Path, facts: Mapping[str, Any]) -> dict[str, Any] | None:
-    """Return the state that was saved, None when there is no file.
+    """Return the state in the checkpoint at `path`, or None if there is no such file.
 
-    Raises InputError: the file is no checkpoint, or one of another model or other settings.
+    Raises InputError if the file is no checkpoint, or if its model or settings differ from `facts`.
     """
     if not path.exists():
         return None

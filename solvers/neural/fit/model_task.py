@@ -23,9 +23,9 @@ from meshonet.solvers.neural.samples import Samples
 class ModelTask(Task):
     """Training of a model of the MeshONet paper.
 
-    `targets`: (n, ni, nj, 2) the wanted outputs for the shapes `training`; `points`: numbers of points drawn
-    for each step, inside and on the boundary (None: all); `seed`: of initial weights and points. Attribute
-    `samples`: shapes with splits on which `figures` evaluates the model; initially `training`.
+    `targets` (n, ni, nj, 2) are the wanted outputs for the shapes `training`. `points` has the numbers of
+    points drawn in each step, inside and on the boundary; None takes all. `seed` seeds initial weights and
+    points. `figures` evaluates the model on the attribute `samples`, initially `training`.
     """
 
     def __init__(
@@ -44,7 +44,7 @@ class ModelTask(Task):
         self.places = tensor(square(training.ni, training.nj)).to(device)
 
     def arrays(self) -> Arrays:
-        """Return the trained and the fixed arrays, by name."""
+        """Return the arrays of the model by name, trained ones and constant ones."""
         trained = {name: value.detach().cpu().numpy() for name, value in self.named_parameters()}
         return {**trained, **{name: value.cpu().numpy() for name, value in self.fixed.items()}}
 
@@ -53,23 +53,24 @@ class ModelTask(Task):
         return PaperOperator(name, self.frame.topology, {}, self.model, self.frame, self.arrays())
 
     def figures(self, epoch: int) -> dict[str, Any]:
-        """Return the epoch, and the errors (`judged`) on training and on test grids."""
+        """Return the epoch, and for the training grids and the test grids the result of `judged`."""
         operator, own = self.operator(), self.samples
         parts = {name: judged(operator, own.pick(own.where(name))) for name in ("train", "test")}
         return {"epoch": epoch, **{name: figures for name, figures in parts.items() if figures}}
 
     def write(self, path: Path, *, recipe: Mapping[str, Any], figures: Mapping[str, Any]) -> None:
-        """Write the model file: float32 arrays."""
+        """Write the model file with arrays in float32."""
         arrays = {key: value.astype(np.float32) for key, value in self.arrays().items()}
         facts = self.operator().facts()
         write_model(path, PAPER, arrays, name=path.stem, recipe=recipe, figures=figures, **facts)
 
 
 def judged(operator: PaperOperator, samples: Samples) -> dict[str, float]:
-    """Return the errors of the grids that a model predicts for `samples`; without samples, an empty dict.
+    """Return the errors of the grids that a model predicts for `samples`; {} if there are none.
 
-    `median`, `worst`: of the relative L2 error against the solved grids; `boundary`: largest distance of a
-    predicted boundary node from the given boundary node; `folded`: number of folded cells in all grids.
+    ``median`` and ``worst`` are of the relative L2 error against the solved grids. ``boundary`` is the
+    greatest distance of a predicted boundary node from the given one. ``folded`` is the number of folded
+    cells in all grids, ``grids`` the number of grids.
     """
     boundary, errors, folded = 0.0, [], 0
     for nodes, edges in zip(samples.nodes, samples.boundaries(), strict=True):
@@ -83,10 +84,10 @@ def judged(operator: PaperOperator, samples: Samples) -> dict[str, float]:
 
 
 def tensor(array: Any) -> Tensor:
-    """Return an array in single precision."""
+    """Return an array as a tensor in single precision."""
     return torch.tensor(np.asarray(array), dtype=torch.float32)
 
 
 def tensors(arrays: Arrays, device: torch.device) -> dict[str, Tensor]:
-    """Return arrays in single precision on a device."""
+    """Return arrays as tensors in single precision on a device."""
     return {name: tensor(value).to(device) for name, value in arrays.items()}

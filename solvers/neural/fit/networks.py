@@ -17,7 +17,7 @@ from meshonet.solvers.neural.strip.network import shapes as strip_shapes
 
 
 class NamedParameters(nn.Module):
-    """A network whose parameters are `arrays` by name; dots in names separate submodules."""
+    """A network with the parameters `arrays` by name; dots in names separate submodules."""
 
     def __init__(self, arrays: Mapping[str, Tensor]) -> None:
         super().__init__()
@@ -32,10 +32,10 @@ class NamedParameters(nn.Module):
 
 
 class StripFNO(NamedParameters):
-    """The strip network, from the inputs of `meshonet.solvers.neural.strip.encoding` to `outputs` channels.
+    """The network for airfoils (`StripNetwork`) as a torch module.
 
-    `inputs`, `scalars`, `outputs`: channel counts; `width`, `modes`: channels and Fourier modes of the hidden
-    state; `layers`: number of Fourier layers.
+    `inputs`, `scalars` and `outputs` are numbers of channels of input and output (`strip.encoding`). `width`,
+    `modes` and `layers` are the numbers of channels, Fourier modes and Fourier layers of the hidden state.
     """
 
     def __init__(
@@ -59,11 +59,11 @@ def _first_of_strip(name: str, shape: tuple[int, ...], shapes: dict[str, tuple[i
 
 
 class QuadUNet(NamedParameters, UNet[Tensor]):
-    """The quad network, from features of a grid to displacements of its nodes.
+    """The U-Net from features of grids to displacements of their nodes, as a torch module.
 
-    `widths`: number of sets of eight channels on each level, the finest first; each level has half as many
-    nodes per direction as the level before; `blocks`: residual blocks on each level, on the way down and
-    again on the way back; `around`: whether grids are O grids, periodic along xi and not padded with zeros.
+    `widths` has for each level, the finest first, the number of channels divided by 8. Each level has half as
+    many nodes per direction as the level before. `blocks` has the number of residual blocks of each level, on
+    the way down and again on the way up. With `around`, grids are O grids and features are periodic along xi.
     """
 
     def __init__(self, widths: Sequence[int], blocks: Sequence[int], around: bool = False) -> None:
@@ -77,10 +77,10 @@ class QuadUNet(NamedParameters, UNet[Tensor]):
             self.register_buffer(name, values, persistent=False)
 
     def forward(self, features: Tensor) -> Tensor:
-        """Return displacements (batch, heads, m, n), complex and 0 on the boundary, for `features`.
+        """Return complex displacements (batch, heads, m, n) for `features` (batch, m, n, FEATURES).
 
-        `features` (batch, m, n, FEATURES): in four-sided domains m equals n; around bodies m must be
-        divisible by 2 once for each level but the finest.
+        They are 0 on the boundary. In four-sided domains m equals n. Around bodies m must be divisible by
+        2^(number of levels - 1).
         """
         answer = self.through(features.movedim(-1, 1), self.counts)
         rim = torch.tensor(
@@ -98,7 +98,7 @@ class QuadUNet(NamedParameters, UNet[Tensor]):
         add: Tensor | None = None,
         room: str = "",  # noqa: ARG002
     ) -> Tensor:
-        """Return the convolution of padded x (batch, 8 in, m, n) with layer `name`; see `UNet.layer`."""
+        """Return the convolution of padded `x` (batch, channels, m, n) by layer `name`; see `UNet.layer`."""
         if name == "lift":
             kernel = symmetry.lift(self.get_parameter("lift"), self.get_buffer("seen"))[..., None, None]
             bias = self.get_parameter("lift_bias").repeat_interleave(ORDER)
@@ -114,14 +114,14 @@ class QuadUNet(NamedParameters, UNet[Tensor]):
         return out if add is None else out + add
 
     def silu(self, x: Tensor, pad: int = 1) -> Tensor:
-        """Return x / (1 + exp(-x)), padded with zeros, or periodically along xi."""
+        """Return x / (1 + exp(-x)), padded with zeros, but periodically along xi of O grids."""
         x = functional.silu(x)
         if self.around and pad:
             return functional.pad(functional.pad(x, (0, 0, pad, pad), mode="circular"), (pad, pad))
         return functional.pad(x, (pad,) * 4)
 
     def finer(self, low: Tensor, skip: Tensor) -> Tensor:
-        """Return the sum of `skip` and of `low`, interpolated linearly to the nodes of `skip`."""
+        """Interpolate `low` linearly to the nodes of `skip`, and return the sum of both."""
         m, n = skip.shape[-2:]
         if self.around:
             low, m = torch.cat([low, low[:, :, :1]], 2), m + 1

@@ -27,15 +27,15 @@ HELD_OUT = 0  # datasets are small, as in the paper: all shapes outside the test
 
 
 class OperatorTask(ModelTask):
-    """Training of an operator on solved grids.
+    """Training of a model on solved grids.
 
     ::
 
         loss = interior * mean |error|^2 inside + boundary * mean |error|^2 on the boundary
 
-    over the points of a step, in squares of the unit of length; error = output - (grid - base). If the model
-    has a base, both terms are divided by the mean square of grid - base. `held_out`: shapes on which the loss
-    is monitored; other parameters: `ModelTask`.
+    The means are over the points of a step. The error is output - (grid - base), where base is the grid to
+    which the model adds its output. If there is a base, both terms are divided by the mean square of grid -
+    base. `held_out` has the shapes on which the loss is monitored; other parameters: `ModelTask`.
     """
 
     def __init__(
@@ -60,7 +60,7 @@ class OperatorTask(ModelTask):
         self.parts = ("interior", "boundary", *(("penalty",) if more else ()))
 
     def forward(self, rows: Tensor, step: int) -> Tensor:
-        """Return the parts of the loss over the shapes `rows`: interior, boundary, and any penalty."""
+        """Return the weighted terms of the loss over the shapes `rows`: interior, boundary, any penalty."""
         index, inner = self._drawn(step)
         place = torch.from_numpy(index).to(self.places.device)
         goal = self.targets.index_select(0, place).view(len(place), self.count, 2)
@@ -74,7 +74,7 @@ class OperatorTask(ModelTask):
         return parts if penalty is None else torch.cat([parts, penalty.float()[None]])
 
     def validate(self) -> dict[str, float]:
-        """Return the loss over the held-out shapes and the mean square distance of their nodes."""
+        """Return the loss over held-out shapes, and the mean square error of their nodes, by name."""
         if self.held_out is None:
             return {}
         inputs, goal = self.held_out
@@ -108,7 +108,7 @@ class OperatorTask(ModelTask):
 
 
 def differences(model: Architecture, samples: Samples) -> Floats:
-    """Return the grids minus the model's base (n, ni, nj, 2)."""
+    """Return the grids minus the base grids (n, ni, nj, 2), to which the model adds its output."""
     if model.base == "none":
         return samples.nodes
     return samples.nodes - np.array([extend(boundary) for boundary in samples.boundaries()])
@@ -128,8 +128,9 @@ def run(
 ) -> Run:
     """Return the run that trains `model` on the training split of `data`, never on its test split.
 
-    `held_out`: number of training grids, spread evenly, on which the loss is monitored; `settings`: values
-    by name that replace the model's default settings. Raises InputError: too few grids; unknown settings.
+    `held_out` is the number of training grids, spread evenly, on which the loss is monitored. `settings` has
+    values by name that replace default settings of the model. Raises InputError if there are too few grids or
+    unknown settings.
     """
     made = architecture(model, data.topology, settings)
     rows = np.arange(len(data)) if made.physics else data.where("train")

@@ -17,8 +17,7 @@ from meshonet.solvers.neural.samples import Samples
 class PhysicsTask(ModelTask):
     """Training of the networks of `MGNet` or `MeshNet` on the geometries of `samples`.
 
-    `points`: number of points drawn inside, and number of boundary nodes drawn, for each step; None: all
-    nodes.
+    `points` has the numbers of points drawn in each step, inside and on the boundary; None takes all nodes.
     """
 
     model: MGNet
@@ -37,7 +36,7 @@ class PhysicsTask(ModelTask):
         self.to(device)
 
     def forward(self, rows: Tensor, step: int) -> Tensor:
-        """Return the parts of the loss over the geometries `rows`."""
+        """Return the weighted terms of the loss over the geometries with indices `rows`."""
         net = {name: value[rows] for name, value in self.named_parameters()}
         inner, outer = self._drawn(step)
         answer = self._plain(net, self.places[outer])

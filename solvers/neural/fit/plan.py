@@ -19,7 +19,7 @@ MACHINE = (
 
 @dataclass(frozen=True)
 class Plan:
-    """Settings of the training loop."""
+    """Settings of the training loop, such as the numbers of epochs and the learning rate."""
 
     epochs: int  # passes over the training shapes
     batch: int = 30  # shapes a step
@@ -50,9 +50,9 @@ class Plan:
         return {key: value for key, value in vars(self).items() if key not in MACHINE}
 
     def kept(self, count: int, held_out: int, what: str) -> int:
-        """Return how many of the `count` shapes, called `what` in messages, remain for training.
+        """Return how many of the `count` shapes remain for training; `what` is their name in messages.
 
-        Raises InputError: no shape is held out, or less than one batch remains for training.
+        Raises InputError if no shape is held out, or if less than one batch remains.
         """
         if held_out < 1 or count < held_out + self.batch:
             needed = max(held_out, 1) + self.batch
@@ -60,7 +60,7 @@ class Plan:
         return count - held_out
 
     def rate_at(self, done: int, steps: int) -> float:
-        """Return the learning rate of step number `done` (from 1), if an epoch has `steps` steps."""
+        """Return the learning rate of training step number `done`, from 1; an epoch has `steps` steps."""
         warm = min(1.0, done / self.warm_up) if self.warm_up else 1.0
         if self.schedule == "cosine":
             fade = 0.5 * (1.0 + math.cos(math.pi * done / (self.epochs * steps)))

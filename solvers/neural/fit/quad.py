@@ -42,17 +42,18 @@ STARTS = 8  # columns that strips begin at in turn: those that the coarsest of f
 
 @dataclass(frozen=True)
 class QuadUNetSizes:
-    """Widths and blocks of `meshonet.solvers.neural.fit.networks.QuadUNet`."""
+    """Numbers of channels and of residual blocks of `meshonet.solvers.neural.fit.networks.QuadUNet`."""
 
     widths: tuple[int, ...] = (2, 3, 6, 8)
     blocks: tuple[int, ...] = (0, 1, 1, 2)
 
 
 class QuadTask(Task):
-    """Training of the quad network on the edges of Winslow's and of variational grids, later also on angles.
+    """Training of the U-Net on grids by Winslow's equations and by the variational method.
 
-    `training`, `held_out`: domains; `sizes`: of the network; `steps`: number of training steps in the whole
-    run; `weights`: of the parts of the loss, by name; `initial`: initial weights of the network, by name.
+    `training` and `held_out` are domains with both grids. `sizes` are those of the network. `steps` is the
+    number of steps of the whole run. `weights` of terms of the loss and `initial` weights of the network are
+    by name.
     """
 
     parts: tuple[str, ...] = tuple(PARTS)
@@ -80,7 +81,7 @@ class QuadTask(Task):
         self.device = device
 
     def forward(self, rows: Tensor, step: int) -> Tensor:
-        """Return the parts of the loss over the domains `rows`."""
+        """Return the weighted terms of the loss over the domains with indices `rows`."""
         self._average(step)
         grids = [z.to(self.device) for z in self.training_set[rows.cpu()].grids()]
         if self.around:
@@ -110,7 +111,7 @@ class QuadTask(Task):
                 mean.lerp_(own, 1.0 - keep)
 
     def validate(self) -> dict[str, float]:
-        """Return medians, over held-out domains, of relative distances to Winslow's and variational grids."""
+        """Return the median relative L2 errors on held-out domains, by method, and the ``loss``."""
         answers, loss = self.answers(), {}
         for k, name in enumerate(HEADS):
             goal = self.held_out.grids()[2 + k]
@@ -119,20 +120,20 @@ class QuadTask(Task):
         return {"loss": loss["variational"], **loss}
 
     def answers(self) -> Tensor:
-        """Return the network's outputs, grids (m, heads, n, n) of held-out domains, with averaged weights."""
+        """Return the grids (m, heads, n, n) of held-out domains by the network with averaged weights."""
         with torch.no_grad():
             pairs = zip(*(torch.split(z, 100) for z in (self.held_out.base, self.held_out.step)), strict=True)
             parts = [self._answers(self.mean, *(z.to(self.device) for z in pair)).cpu() for pair in pairs]
         return torch.cat(parts)
 
     def figures(self, epoch: int) -> dict[str, Any]:  # noqa: ARG002
-        """Return figures that compare the network's grids of held-out domains with their targets."""
+        """Return error measures of the network's grids of held-out domains; see `held_out_figures`."""
         base, _, *goals = self.held_out.grids()
         grids = (self.answers(), base, *goals)
         return held_out_figures(*(_in_plane(z) if self.around else z.numpy() for z in grids))
 
     def write(self, path: Path, *, recipe: Mapping[str, Any], figures: Mapping[str, Any]) -> None:
-        """Write the model file: the averaged weights in float32, by their names in torch."""
+        """Write the model file with averaged weights in float32, by their names in torch."""
         state = self.mean.state_dict()
         arrays = {key: value.cpu().numpy().astype(np.float32) for key, value in state.items()}
         topology: Topology = "o" if self.around else "quad"
@@ -172,11 +173,11 @@ def run(
     initial: Operator | None = None,
     weights: Mapping[str, float] | None = None,
 ) -> Run:
-    """Return the run that trains the quad network; the last `held_out` domains are never trained on.
+    """Return the run that trains the U-Net; the last `held_out` domains are never trained on.
 
-    `initial`: quad operator that gives the initial weights and the sizes; `weights`: of parts of the loss, in
-    place of those in `PARTS`. Raises InputError: fewer domains than one batch after those held out; a weight
-    of an unknown part, or a negative or non-finite weight; an `initial` operator that is no quad operator.
+    `initial` is an operator that gives the initial weights and the sizes. `weights` replaces the weights
+    `PARTS` of the terms of the loss. Raises InputError if less than one batch remains for training, if a
+    weight is unknown, negative or not finite, or if `initial` has no such network.
     """
     sizes, kept = sizes or QuadUNetSizes(), plan.kept(len(data), held_out, "domains")
     if initial is not None:

@@ -19,11 +19,11 @@ Grids = NDArray[np.complexfloating[Any, Any]]
 
 
 def held_out_figures(answers: Grids, base: Grids, winslow: Grids, variational: Grids) -> dict[str, Any]:
-    """Return figures that compare the network's grids `answers` (m, heads, n, n) with targets (m, n, n).
+    """Return error measures of a network's grids `answers` (m, heads, n, n) against target grids (m, n, n).
 
-    Figures of angles are the largest corner angle of a grid, and the mean over cells of each cell's largest.
-    A gain compares improvements of a figure over Winslow's grid: the improvement by the network, divided by
-    the improvement by the variational grid. Domains whose Winslow grid has folded cells are left out.
+    Angles are judged by the greatest corner angle of a grid (``max``), and by the mean over cells of each
+    cell's greatest (``mean``). A gain is the network's improvement over Winslow's grids, divided by the
+    improvement of the variational grids. Domains whose Winslow grid has folded cells are left out.
     """
     solved, best = angles(winslow), angles(variational)
     valid = solved[0] < 360.0
@@ -46,9 +46,9 @@ def held_out_figures(answers: Grids, base: Grids, winslow: Grids, variational: G
 
 
 def angles(z: Grids) -> tuple[Floats, Floats]:
-    """Return the maximum and the mean (m,) of cells' largest angles, in degrees, for grids `z` (m, n, n).
+    """Return the maximum and the mean (m,) over cells of each cell's greatest angle, for grids `z` (m, n, n).
 
-    Both are 360 for a grid with folded cells.
+    Angles are in degrees. Both numbers are 360 for a grid with folded cells.
     """
     least, most = (np.degrees(value.numpy()) for value in extremes(torch.from_numpy(z)))
     folded = (least <= 0.0).any((1, 2)) | (most >= 180.0).any((1, 2))
@@ -70,9 +70,10 @@ def _share(values: Bools) -> float:
 def excess(z: Tensor, goal: Tensor) -> tuple[Tensor, Tensor, Tensor]:
     """Return three measures (batch,) of how much worse complex grids `z` (batch, m, n) are than `goal`.
 
-    The first two concern each cell's largest angle: by how many radians its mean and its maximum over all
-    cells exceed those of `goal`, or 0. The third is log(1 + s / `SLIGHT`), where s is the sum of the angles
-    beyond the limits `NARROW` and `WIDE`, or beyond those of the same cell of `goal` if wider.
+    The first two are the excesses, in radians, of the mean and of the maximum over cells of each cell's
+    greatest angle; they are 0 if `z` is better. The third is log(1 + s / `SLIGHT`), where s is the sum of
+    angles beyond the limits `NARROW` and `WIDE`, or beyond the angles of the same cell of `goal` if these are
+    wider.
     """
     least, most = extremes(z)
     with torch.no_grad():
@@ -84,9 +85,9 @@ def excess(z: Tensor, goal: Tensor) -> tuple[Tensor, Tensor, Tensor]:
 
 
 def extremes(z: Tensor) -> tuple[Tensor, Tensor]:
-    """Return the smallest and the largest corner angle of each cell (batch, m - 1, n - 1), in radians.
+    """Return the smallest and the greatest corner angle of each cell (batch, m - 1, n - 1), in radians.
 
-    Angles of folded corners are below 0, down to -π/2, or above π, so that the loss has a gradient there.
+    Angles of folded corners are negative or above π, so that the loss has a gradient there.
     """
     u, v = z.diff(dim=1), z.diff(dim=2)
     south, north, west, east = u[:, :, :-1], u[:, :, 1:], v[:, :-1], v[:, 1:]

@@ -20,11 +20,11 @@ from meshonet.solvers.neural.samples import Samples, gathered
 
 @dataclass(frozen=True)
 class Quads:
-    """Complex grids (m, n, n) of m domains of unit size: `base`, `winslow` and `variational`.
+    """Training grids of m domains of unit size, as complex arrays (m, n, n).
 
-    `approach` makes `base` from transfinite grids, by Picard steps; `step` is the last of these steps. With
-    `around`, grids are unrolled strips (m, 65, n) of O grids, and `base` starts from equal steps between wall
-    and far field.
+    `winslow` and `variational` are the target grids. `base` comes from transfinite grids by a few Picard
+    steps; `step` is the last of these steps. With `around`, the arrays (m, 65, n) are O grids mapped to
+    strips by a complex logarithm.
     """
 
     base: Tensor
@@ -41,15 +41,15 @@ class Quads:
         return Quads(base, step, winslow, variational, self.around)
 
     def grids(self) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-        """Return base, step, Winslow's and variational grids."""
+        """Return `base`, `step`, `winslow` and `variational`."""
         return self.base, self.step, self.winslow, self.variational
 
 
 def quads_of(datasets: Iterable[Iterable[Grid]]) -> Quads:
-    """Return the normalised domains that datasets of Winslow's and of variational grids have in common.
+    """Return the domains that are both in a dataset of Winslow's grids and in one of variational grids.
 
-    The method of a dataset is that of its first grid. Raises InputError: no grids by one of the two methods,
-    or grids by another method; also as `quads`.
+    The method of a dataset is that of its first grid. Raises InputError if one of the two methods is missing
+    or there is another one; see also `quads`.
     """
     groups: dict[str, list[Grid]] = {}
     for dataset in datasets:
@@ -64,10 +64,10 @@ def quads_of(datasets: Iterable[Iterable[Grid]]) -> Quads:
 
 
 def quads(variational: Samples, winslow: Samples) -> Quads:
-    """Return the normalised domains whose grids are in both datasets.
+    """Return the domains whose grids are in both datasets, scaled to unit size.
 
-    Raises InputError: grids that are neither quads with `LATENT` nodes along xi and along eta, nor O grids
-    with `AROUND` nodes along xi; no domain in common.
+    Raises InputError if no domain is in both, or unless all are four-sided grids with `LATENT` nodes along xi
+    and eta, or all are O grids with `AROUND` nodes along xi.
     """
     around = variational.topology == "o"
     wanted = ("o", AROUND, LATENT) if around else ("quad", LATENT, LATENT)

@@ -31,7 +31,7 @@ QUANTILES = {"median": 0.5, "p90": 0.9, "worst": 1.0}  # of held-out errors, in 
 
 @dataclass(frozen=True)
 class StripSizes:
-    """Sizes of the network: basis functions across the strip, channels, Fourier modes and layers."""
+    """Sizes of the network: numbers of basis functions, channels, Fourier modes and layers."""
 
     basis: int = 16
     width: int = 32
@@ -40,9 +40,9 @@ class StripSizes:
 
 
 class StripTask(Task):
-    """Training of the strip network on solved strips and their mirror images.
+    """Training of the network for airfoils on solved strips (images of domains) and their mirror images.
 
-    `held_out`: strips on which errors are measured; `sizes`: of the network.
+    `held_out` has the strips on which errors are measured, `sizes` has the sizes of the network.
     """
 
     parts: tuple[str, ...] = ("difference",)
@@ -64,24 +64,21 @@ class StripTask(Task):
         return (self.importance[rows] * (error**2).sum(1).mean(1)).mean()[None]
 
     def validate(self) -> dict[str, float]:
-        """Return ``loss`` (the median), ``p90`` and ``worst`` of the `distance` between output and R.
-
-        R is Winslow's solution in a held-out strip minus the harmonic extension of the walls.
-        """
+        """Return the median (``loss``), ``p90`` and ``worst`` error of the network on held-out strips."""
         pairs = zip(self.answers(), self.held_out.residual, strict=True)
         errors = [distance(answer, goal) for answer, goal in pairs]
         median, p90, worst = (float(q) for q in np.quantile(errors, list(QUANTILES.values())))
         return {"loss": median, "p90": p90, "worst": worst}
 
     def answers(self) -> list[Complexes]:
-        """Return the network's R for every held-out strip."""
+        """Return the network's predictions of `Strips.residual` for the held-out strips."""
         channels, scalars, size = encode(self.held_out.wall, self.held_out.far)
         with torch.no_grad():
             out = self.net(tensor(channels).to(self.device), tensor(scalars).to(self.device)).cpu()
         return list(decode(out.numpy().astype(np.float64), self.basis, self.scale, size))
 
     def figures(self, epoch: int) -> dict[str, Any]:  # noqa: ARG002
-        """Return quantiles over held-out strips of the `distance` from R to the network's output and to 0."""
+        """Return quantiles of errors on held-out strips, with and without the network and Picard steps."""
         test, errors = self.held_out, dict[str, list[float]]()
         for wall, far, goal, answer in zip(test.wall, test.far, test.residual, self.answers(), strict=True):
             base = harmonic(wall, far, across().eta)
@@ -102,7 +99,7 @@ class StripTask(Task):
         return figures
 
     def write(self, path: Path, *, recipe: Mapping[str, Any], figures: Mapping[str, Any]) -> None:
-        """Write the model file: float16 weights, the basis in float32."""
+        """Write the model file: weights in float16, basis functions in float32."""
         arrays = {key: value.cpu().numpy().astype(np.float16) for key, value in self.net.state_dict().items()}
         arrays["basis"] = self.basis.astype(np.float32)
         made: dict[str, Any] = {"scale": self.scale, "recipe": recipe, "figures": figures}
@@ -117,9 +114,9 @@ def run(
     held_out: int,
     sizes: StripSizes | None = None,
 ) -> Run:
-    """Return the run that trains the strip network; the last `held_out` strips are never trained on.
+    """Return the run that trains the network for airfoils; the last `held_out` strips are never trained on.
 
-    Raises InputError: fewer strips than one batch after those held out.
+    Raises InputError if less than one batch of strips remains for training.
     """
     sizes, kept = sizes or StripSizes(), plan.kept(len(data), held_out, "shapes")
     torch.manual_seed(plan.seed)
@@ -129,5 +126,5 @@ def run(
 
 
 def distance(answer: Complexes, goal: Complexes) -> float:
-    """Return the root mean square over the strip of |answer - goal|, from Fourier modes (.., LEVELS)."""
+    """Return the root mean square of |answer - goal| over a strip; both are Fourier modes (.., LEVELS)."""
     return float(np.sqrt((np.abs(answer - goal) ** 2).sum(axis=0).mean()))

@@ -25,9 +25,9 @@ class Team:
         return self.rank == 0
 
     def share(self, rows: Tensor) -> tuple[Tensor, float]:
-        """Return this process's part of a batch `rows`, and the weight of this part in the mean of the batch.
+        """Return the part of a batch `rows` that this process computes, and its weight in the mean.
 
-        Every process must compute a step: a process without rows gets the first row, with weight 0.
+        Every process must compute a step; a process without a part gets the first row, with weight 0.
         """
         own = rows[self.rank :: self.size]
         if len(own) == 0:
@@ -43,15 +43,15 @@ class Team:
         return value / self.size
 
     def close(self) -> None:
-        """Leave the group."""
+        """Leave the group of processes."""
         if self.size > 1 and dist.is_initialized():
             dist.destroy_process_group()
 
 
 def team(device: Device) -> Team:
-    """Return the team of this process; under torchrun, it consists of all started processes.
+    """Return the object of this process; under torchrun it belongs to the team of all started processes.
 
-    Raises InputError: ``cuda`` is asked for and there is none.
+    Raises InputError if `device` is ``cuda`` and there is no such device.
     """
     if device == "cuda" and not torch.cuda.is_available():
         raise InputError("torch sees no CUDA device", "use {device} cpu or auto", parameter="device")

@@ -34,10 +34,11 @@ def train(
     report: Callable[[Progress], None] | None = None,
     **choices: Any,
 ) -> dict[str, Any]:
-    """Train a model, write its file, and return its figures on held-out shapes.
+    """Train a model, write its file, and return its error measures on held-out shapes.
 
-    Raises InputError: no such model; too few shapes; a checkpoint of another model, data or settings; choices
-    that do not suit the model. Raises SolverError: as `meshonet.solvers.neural.fit.loop.fit`.
+    Raises InputError if there is no such model, if shapes are too few, if the checkpoint has another model,
+    data or settings, or if choices do not suit the model. Raises SolverError as
+    `meshonet.solvers.neural.fit.loop.fit`.
 
     Parameters
     ----------
@@ -45,13 +46,13 @@ def train(
     data : `Strips` for ``strip``, `Quads` for ``quad``, a list of `SixFaces` for `OF_VOLUMES`, else
         `Samples`.
     output : path of the model file.
-    plan : settings of the loop (see `standard`).
-    team : the processes that train together.
-    recipe : settings that are stored in the file.
+    plan : settings of the training loop (see `standard`).
+    team : this process among those that train together.
+    recipe : settings to store in the model file.
     held_out : number of shapes that are not used for training; None: the default of the model.
-    resume : whether to continue from a checkpoint beside `output`.
+    resume : whether to continue from the checkpoint that belongs to `output`.
     report : called every `plan.log_every` epochs and at the end.
-    choices : further parameters of ``run`` in the model's module in `fit`.
+    choices : further parameters of the function ``run`` for this model.
     """
     module = _module(model)
     held_out = module.HELD_OUT if held_out is None else held_out
@@ -67,7 +68,7 @@ def train(
 
 
 def standard(model: str) -> Plan:
-    """Return the default settings (plan) of a training: those of the shipped model, or those of the paper."""
+    """Return the default training settings: those of the shipped model, or those of the paper."""
     plan: Plan = _module(model).PLAN
     return plan
 

@@ -33,7 +33,7 @@ HELD_OUT = 0
 
 
 class VolumeTask(Task):
-    """Training of `model` on `volumes`; `points`: numbers of random points inside and on faces per step."""
+    """Training of one network for each of `volumes`; `points`: numbers per step, inside and on faces."""
 
     parts = ("winslow", "faces", "weights")
 
@@ -58,13 +58,13 @@ class VolumeTask(Task):
         self.to(device)
 
     def forward(self, rows: Tensor, step: int) -> Tensor:
-        """Return the parts of the loss over the geometries `rows`; lengths are relative to a geometry's size.
+        """Return the terms of the loss over the geometries `rows`; lengths are relative to a geometry's size.
 
         ::
 
-            loss = sum over both parts of exp(-s) L / 2 + s / 2        s trained, log of the part's variance
-            L_winslow = mean |sum_ij a_ij X_ij|^2        a the adjugate of the metric, central differences
-            L_faces   = mean |X - U|^2
+            loss = sum over both terms of exp(-s) L / 2 + s / 2     s: log of the term's variance, trained
+            L_winslow = mean |sum_ij a_ij X_ij|^2                   a: adjugate of the metric
+            L_faces   = mean |X - U|^2                              U: nodes of the faces
         """
         rng = np.random.default_rng([self.seed, 1, step])
         inner = tensor(rng.uniform(-1.0, 1.0, (self.points[0], 3))).to(rows.device)
@@ -80,7 +80,7 @@ class VolumeTask(Task):
         return torch.cat([0.5 * torch.exp(-self.spread) * both, 0.5 * self.spread.sum()[None]])
 
     def differentiate(self, parts: Tensor, team: Team) -> None:
-        """Set the gradients of the parameters; if those of two parts of the loss conflict, project them."""
+        """Compute the gradients of the parameters; conflicting gradients of terms are projected."""
         if not self.model.projected:
             super().differentiate(parts, team)
             return
@@ -99,7 +99,7 @@ class VolumeTask(Task):
         return VolumeNetwork(name, {**own, **self.fixed})
 
     def figures(self, epoch: int) -> dict[str, Any]:
-        """Return the epoch, and the errors against Winslow's grids where these exist."""
+        """Return `epoch`, and the errors against those of Winslow's grids that could be solved."""
         from meshonet.solvers.volumes.winslow import winslow
 
         network, errors, away, folded = self.network(), [], 0.0, 0
@@ -118,7 +118,7 @@ class VolumeTask(Task):
         return {"epoch": epoch, "train": {**own, "boundary": away, "folded": folded, "grids": self.count}}
 
     def write(self, path: Path, *, recipe: Mapping[str, Any], figures: Mapping[str, Any]) -> None:
-        """Write the model file."""
+        """Write the model file with the training settings `recipe` and the error measures `figures`."""
         arrays = {key: np.asarray(value) for key, value in self.network().weights.items()}
         write_model(
             path, VOLUME, arrays, path.stem, "quad", recipe=recipe, figures=figures,
@@ -127,7 +127,7 @@ class VolumeTask(Task):
 
 
 def residual(net: Mapping[str, Tensor], points: Tensor, h: float) -> Tensor:
-    """Return the residual (p, 3) of Winslow's equations at points (p, 3), by finite differences of step h."""
+    """Return the residual (p, 3) of Winslow's equations at `points` (p, 3), by differences of step `h`."""
     unit = h * torch.eye(3, dtype=points.dtype, device=points.device)
     pairs = list(combinations(range(3), 2))
     steps = [torch.zeros_like(unit[0]), *unit, *-unit]
@@ -148,7 +148,7 @@ def residual(net: Mapping[str, Tensor], points: Tensor, h: float) -> Tensor:
 
 
 def project(first: Tensor, second: Tensor) -> Tensor:
-    """Return the sum of two gradients (n,), without the component of each that opposes the other gradient."""
+    """Add two gradients (n,); first remove from each of them the component that opposes the other."""
     dot = first @ second
     if dot >= 0.0:
         return first + second
@@ -178,7 +178,7 @@ def run(
 ) -> Run:  # fmt: skip
     """Return the run that trains a network for each volume of `data`.
 
-    Raises InputError: volumes held out; unknown settings.
+    Raises InputError if `held_out` is not 0, or if settings are unknown.
     """
     if held_out:
         raise InputError("a network for one volume holds none out", "leave {held_out} out")

@@ -25,12 +25,11 @@ SCALING = (  # filter of the scaling function
 
 @dataclass(frozen=True)
 class AlongXi(Architecture):
-    """An operator from functions of xi to functions of xi, evaluated on the nodes of the training grids.
+    """A neural operator from functions of xi to functions of xi, evaluated on nodes of the training grids.
 
-    ::
-
-        in    at every xi: x and y of south and north, of west and east at a few eta (the same for all), xi
-        out   x and y at every eta, for every xi
+    The input at each xi has x and y of the south and north node, x and y of a few nodes of west and east,
+    which are the same for all xi, and xi. The output at each xi has x and y of all nodes of the grid line
+    along eta.
     """
 
     native: ClassVar[bool] = True
@@ -42,7 +41,7 @@ class AlongXi(Architecture):
         return lift | self.layer_shapes(frame) | dense_shapes("project", (self.width, PROJECT, 2 * frame.nj))
 
     def encode(self, boundaries: Sequence[Boundary]) -> Arrays:
-        """Return the input channels at every xi (batch, ni, channels)."""
+        """Return the input channels (batch, ni, channels) as the only entry of a dictionary."""
         rows = []
         for boundary in boundaries:
             chosen = np.linspace(0, boundary.nj - 1, SIDE).round().astype(int)
@@ -57,17 +56,17 @@ class AlongXi(Architecture):
         return out.reshape(len(out), -1, 2)[:, index]
 
     def layer_shapes(self, frame: Frame) -> Shapes:
-        """Return the array shapes of the trained parameters of `hidden`, by name."""
+        """Return the array shapes of the trained parameters that `hidden` uses, by name."""
         raise NotImplementedError
 
     def hidden(self, xp: Any, w: Weights, h: Any) -> Any:
-        """Return the hidden state (batch, ni, width) after all layers."""
+        """Return the hidden state (batch, ni, width) after all layers, from the lifted input `h`."""
         raise NotImplementedError
 
 
 @dataclass(frozen=True)
 class WNO(AlongXi):
-    """Wavelet neural operator along xi: h <- gelu(K h + W h + b).
+    """Wavelet neural operator along xi: h <- gelu(K h + W h + b), where K multiplies wavelet coefficients.
 
     Tripura & Chakraborty, CMAME 404 (2023) 115783; Daubechies, Ten Lectures on Wavelets (1992), table 6.1.
     """
@@ -77,7 +76,7 @@ class WNO(AlongXi):
     padding: int = 9  # least number of zeros before the transform
 
     def layer_shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of trained parameters. Raises InputError: more levels than the nodes permit."""
+        """Return the shapes of trained parameters. Raises InputError: too many levels for the node count."""
         if not 1 <= self.levels <= 8 or 2**self.levels > frame.ni:
             problem = f"levels={self.levels} of grids of {frame.ni} nodes along xi"
             raise InputError(problem, "use fewer, at least 1", parameter="set")
@@ -109,9 +108,9 @@ class WNO(AlongXi):
 
 @cache
 def wavelets(n: int, levels: int) -> Floats:
-    """Return the orthonormal periodic scaling functions and wavelets of the last level (2 n / 2^levels, n).
+    """Return orthonormal periodic scaling functions, then wavelets, of the last level (2 n / 2^levels, n).
 
-    `n` is a multiple of 2^levels.
+    Each row has the values at `n` nodes, a multiple of 2^levels.
     """
     low = np.array(SCALING)
     high = low[::-1] * np.where(np.arange(low.size) % 2, -1.0, 1.0)
@@ -127,7 +126,7 @@ def wavelets(n: int, levels: int) -> Floats:
 
 @dataclass(frozen=True)
 class LNO(AlongXi):
-    """Laplace neural operator along xi: h <- sin(K h + W h + b).
+    """Laplace neural operator along xi: h <- sin(K h + W h + b), where K is a linear system (`respond`).
 
     Cao, Goswami & Karniadakis, LNO: Laplace neural operator for solving differential equations, arXiv
     2303.10528.
@@ -153,11 +152,11 @@ class LNO(AlongXi):
 
 
 def respond(xp: Any, poles: Any, residues: Any, h: Any) -> Any:
-    """Return the responses (batch, n, out) of linear systems to h (batch, n, in), at n times from 0 to 1.
+    """Return the responses (batch, n, out) of linear systems to `h` (batch, n, in), at n places from 0 to 1.
 
-    `poles`: (in, out * poles, 2), the logarithm of the decay rate, and the frequency in half turns;
-    `residues`: (in, out, poles, 2). With poles mu, residues beta, and the Fourier coefficients alpha and
-    frequencies omega of h, the response at xi from rest is ::
+    `poles` (in, out * poles, 2) has the logarithm of the decay rate, and the frequency in half turns;
+    `residues` has the shape (in, out, poles, 2). With poles mu_n, residues beta_n, and the Fourier
+    coefficients alpha_l of h with frequencies omega_l, the response from rest at the place xi is ::
 
         sum_l alpha_l H(i omega_l) exp(i omega_l xi) - sum_n beta_n A(mu_n) exp(mu_n xi)
         H(s) = sum_n beta_n / (s - mu_n)        A(s) = sum_l alpha_l / (i omega_l - s)

@@ -15,7 +15,7 @@ from meshonet.solvers.neural.samples import Samples
 
 @dataclass(frozen=True)
 class Frame:
-    """Topology, node counts `ni` and `nj`, and number `count` of the training grids."""
+    """Topology, node counts and number of the training grids."""
 
     topology: Topology
     ni: int
@@ -25,7 +25,7 @@ class Frame:
 
 @dataclass(frozen=True)
 class Architecture:
-    """An operator from boundaries to grids; its fields are its settings, kept in the header of its file."""
+    """Base class of models from boundaries to grids; fields are settings, stored in the model file."""
 
     base: ClassVar[Literal["none", "harmonic"]] = "none"  # grid to which the network's output is added
     physics: ClassVar[bool] = False  # whether it is trained on Winslow's equations, one network per geometry
@@ -40,9 +40,9 @@ class Architecture:
         raise NotImplementedError
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
-        """Return constant arrays, by name, computed from the training set and not trained.
+        """Return arrays by name that are computed from the training set and not trained.
 
-        `targets` (n, ni, nj, 2) are the training grids minus their base grids (`base`).
+        `targets` (n, ni, nj, 2) are the training grids minus the base grids (see `base`).
         """
         return {}
 
@@ -51,21 +51,21 @@ class Architecture:
         return {"sensors": np.array([sensors(boundary, self.sensors) for boundary in boundaries])}
 
     def check(self, w: Weights, inputs: Weights) -> None:
-        """Raise InputError for `inputs` outside of the model's scope; the default accepts all inputs."""
+        """Raise InputError if the model does not apply to `inputs`; by default it applies to all."""
 
     def penalty(self, xp: Any, w: Weights, inputs: Weights) -> Any:
-        """Return a further part of the loss, a scalar; None, the default, if there is none."""
+        """Return a further term of the loss, a scalar; None, the default, if there is none."""
         return None
 
     def seen(self, xp: Any, points: Any) -> Any:
-        """Return the trunk's input (p, features) at `points` (p, 2) in (xi, eta)."""
+        """Return the network's input (p, features) at `points` (p, 2), given as (xi, eta)."""
         return points
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
         """Return the coordinates (batch, p, 2) of p points, minus those of the base grid.
 
-        `xp`: numpy or torch; `w`: trained and fixed arrays by name; `inputs`: from `encode`; `places`: from
-        `seen`; `index`: (p,) indices of the points among the nodes of the training grids, for models defined
-        only there.
+        `xp` is numpy or torch, `w` has trained and fixed arrays by name, `inputs` comes from `encode`, and
+        `places` from `seen`. For models that are defined only at the nodes of the training grids, `index`
+        (p,) has the indices of the points among these nodes.
         """
         raise NotImplementedError

@@ -32,9 +32,9 @@ MODELS = ("strip", "quad", *ARCHITECTURES)
 
 
 def architecture(name: str, topology: Topology, settings: Mapping[str, Any] | None = None) -> Architecture:
-    """Return the model `name` of `ARCHITECTURES`, with `settings` instead of its defaults.
+    """Return the model `name` of `ARCHITECTURES`; `settings` replace defaults.
 
-    Raises InputError: no such model or setting, or a value of another type than the setting.
+    Raises InputError if there is no such model or setting, or if a value has another type than the default.
 
     >>> architecture("meshonet", "quad", {"sensors": 80}).sensors
     80
@@ -49,9 +49,9 @@ def architecture(name: str, topology: Topology, settings: Mapping[str, Any] | No
 
 
 def with_settings(cls: type[M], name: str, settings: Mapping[str, Any]) -> M:
-    """Return a model of class `cls` with `settings` in place of its defaults.
+    """Return a model of class `cls`; `settings` replace defaults.
 
-    Raises InputError: no such setting, or a value of another type than the default.
+    Raises InputError if there is no such setting, or if a value has another type than the default.
     """
     defaults = {field.name: field.default for field in dataclasses.fields(cls)}  # type: ignore[arg-type]
     changed = {key: _fitting(name, defaults, key, value) for key, value in settings.items()}

@@ -17,10 +17,10 @@ from meshonet.solvers.neural.samples import Samples
 
 @dataclass(frozen=True)
 class MeshONet(Architecture):
-    """The operator of the MeshONet paper with the authors' settings; 54,482 parameters.
+    """The neural operator of the MeshONet paper with the authors' settings; 54,482 parameters.
 
-    ``x = branch_x(s_x) . trunk(lift(xi, eta)) + b``, and y likewise with the same trunk; tanh after its last
-    layer. Xiao et al., arXiv 2501.11937.
+    ``x = branch_x(s_x) . trunk(lift(xi, eta)) + b``, where s_x has the x coordinates of boundary points; the
+    same for y with the same trunk. Its last layer ends with tanh. Xiao et al., arXiv 2501.11937.
     """
 
     interior: ClassVar[float] = 900.0
@@ -37,7 +37,7 @@ class MeshONet(Architecture):
         return {**branches, **dense_shapes("trunk", trunk), "output/bias": (2,)}
 
     def seen(self, xp: Any, points: Any) -> Any:
-        """Return the output of the Lift-Layer at `points`."""
+        """Return the output of the paper's Lift-Layer at `points` (`sensors.lift`)."""
         return lift(xp, points, self.powers)
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
@@ -51,7 +51,8 @@ class MeshONet(Architecture):
 class DeepONet(Architecture):
     """One branch and one trunk; half of their features are for x, the other half for y.
 
-    ``x = branch(s)[:k] . trunk(xi, eta)[:k] + b``. Lu et al., Nature Machine Intelligence 3 (2021) 218.
+    ``x = branch(s)[:k] . trunk(xi, eta)[:k] + b``, where s has the coordinates of boundary points. Lu et al.,
+    Nature Machine Intelligence 3 (2021) 218.
     """
 
     hidden: tuple[int, ...] = (64, 128, 64)  # widths of a branch's hidden layers
@@ -74,9 +75,9 @@ class DeepONet(Architecture):
 
 @dataclass(frozen=True)
 class MIONet(DeepONet):
-    """Two branches, for x and y of the sensors, whose features are multiplied, and one trunk.
+    """One trunk and two branches, for x and for y of boundary points, whose features are multiplied.
 
-    ``x = (branch_x(s_x) * branch_y(s_y))[:k] . trunk(xi, eta) + b``, and y likewise with ``[k:]``. Jin, Meng
+    ``x = (branch_x(s_x) * branch_y(s_y))[:k] . trunk(xi, eta) + b``; the same for y with ``[k:]``. Jin, Meng
     & Lu, SIAM Journal on Scientific Computing 44 (2022) A3490.
     """
 
@@ -93,11 +94,11 @@ class MIONet(DeepONet):
 
 @dataclass(frozen=True)
 class PODDeepONet(Architecture):
-    """A branch whose trunk is the proper orthogonal decomposition of the training grids.
+    """DeepONet whose trunk is the proper orthogonal decomposition of the training grids.
 
-    ``(x, y) = mean + sum_k branch(s)_k * mode_k(xi, eta)``, evaluated on the nodes of the training grids; x
-    and y of a grid form one vector. Modes are scaled so that the branch's outputs are of the order of 1. Lu
-    et al., CMAME 393 (2022) 114778, sections 3.1.4 and 3.1.6.
+    ``(x, y) = mean + sum_k branch(s)_k * mode_k(xi, eta)``, evaluated on the nodes of the training grids; a
+    mode has x and y. Modes are scaled so that the branch's outputs are of the order of 1. Lu et al., CMAME
+    393 (2022) 114778, sections 3.1.4 and 3.1.6.
     """
 
     native: ClassVar[bool] = True
@@ -109,9 +110,9 @@ class PODDeepONet(Architecture):
         return dense_shapes("branch", (2 * self.sensors, *self.hidden, self.features))
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
-        """Return the mean grid (nodes, 2) and the principal modes (nodes, features, 2).
+        """Return the mean grid (nodes, 2) and the modes of the decomposition (nodes, features, 2), by name.
 
-        If there are fewer grids than features, the remaining modes are 0.
+        If the modes are fewer than `features`, the others are 0.
         """
         n = len(targets)
         rows = targets.reshape(n, -1)

@@ -18,7 +18,7 @@ from meshonet.solvers.neural.models.layers import Arrays, Shapes, Weights, dense
 
 @dataclass(frozen=True)
 class FNO1D(AlongXi):
-    """One-dimensional Fourier neural operator along xi."""
+    """One-dimensional Fourier neural operator along xi; see `AlongXi`."""
 
     modes: int = 16  # that are mixed
     layers: int = 4  # Fourier layers
@@ -35,10 +35,10 @@ class FNO1D(AlongXi):
 
 
 def mix_modes(xp: Any, weight: Any, h: Any, modes: int, padding: int) -> Any:
-    """Return h (batch, n, width) after the channels of each of its lowest modes are mixed by a matrix.
+    """Multiply the channels of each of the lowest Fourier modes of `h` (batch, n, width) by a matrix.
 
-    `weight`: complex matrices (modes, width, width, 2), or (width, width, 2) for all modes; `padding`: zeros
-    appended before the transform, since h is not periodic.
+    `weight` has complex matrices (modes, width, width, 2), or one (width, width, 2) for all modes; other
+    modes become 0. `padding` is the number of zeros that are appended first, since h is not periodic.
     """
     n = h.shape[1]
     spectrum = xp.fft.rfft(h, n + padding, 1)
@@ -63,7 +63,7 @@ def _layer_shapes(layers: int, mixing: tuple[int, ...], width: int) -> Shapes:
 class FNO2D(Architecture):
     """Two-dimensional Fourier neural operator, evaluated on the nodes of the training grids.
 
-    Inputs at (xi, eta) are x and y of south and north at xi and of west and east at eta, xi and eta.
+    The input at a node has xi, eta, and x and y of the four boundary nodes on its two grid lines.
     """
 
     native: ClassVar[bool] = True
@@ -74,7 +74,7 @@ class FNO2D(Architecture):
     padding: int = 9  # nodes of zeros before the transform, in each direction
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of trained parameters. Raises InputError: more modes than the grids have."""
+        """Return the shapes of trained parameters. Raises InputError: too many modes for the node counts."""
         most = (min(frame.ni, frame.nj) + self.padding) // 2
         if not 1 <= self.modes <= most:
             problem = f"modes={self.modes} of grids of {frame.ni} x {frame.nj} nodes"
@@ -135,8 +135,8 @@ def _waves(ni: int, nj: int, modes: int, padding: int) -> tuple[NDArray[Any], Fl
 class KNO(AlongXi):
     """Koopman neural operator along xi; `width` is the number of observables.
 
-    K multiplies each of the lowest Fourier modes of the observables by one and the same matrix; W restores
-    the other modes. ::
+    K multiplies each of the lowest Fourier modes of the observables by the same matrix. W restores the other
+    modes. ::
 
         h = g;  `steps` times: h <- h + K h;  g <- tanh(h + W g + b)
 
@@ -164,7 +164,7 @@ class KNO(AlongXi):
         return xp.tanh(h + dense(xp, w, "local", g))
 
     def penalty(self, xp: Any, w: Weights, inputs: Weights) -> Any:
-        """Return the weighted mean square error of the inputs that are decoded from the observables."""
+        """Return the weighted mean square error of the inputs as the second decoder reconstructs them."""
         edges = inputs["edges"]
         observables = xp.tanh(dense(xp, w, "lift", edges))
         return self.reconstruction * ((dense(xp, w, "inputs", observables) - edges) ** 2).mean()

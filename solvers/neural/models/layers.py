@@ -13,7 +13,7 @@ Shapes: TypeAlias = dict[str, tuple[int, ...]]
 
 
 def dense_shapes(name: str, sizes: Sequence[int], stacked: int | None = None) -> Shapes:
-    """Return the array shapes of dense layers, or of `stacked` independent copies of the layers."""
+    """Return the array shapes of dense layers of widths `sizes`, or of `stacked` copies of the layers."""
     shapes: Shapes = {}
     lead = () if stacked is None else (stacked,)
     for k, (a, b) in enumerate(pairwise(sizes)):
@@ -23,9 +23,9 @@ def dense_shapes(name: str, sizes: Sequence[int], stacked: int | None = None) ->
 
 
 def dense(xp: Any, w: Weights, name: str, h: Any, *, last: bool = False) -> Any:
-    """Return the output of the dense layers called `name` for h (.., in).
+    """Return the output of the dense layers called `name` for `h` (.., in).
 
-    tanh follows each layer; it follows the last layer only with `last`.
+    tanh follows each layer but the last, and the last one too if `last` is true.
     """
     k = 0
     while f"{name}/{k}/weight" in w:
@@ -45,11 +45,11 @@ def products(trunk: Any, branches: Any) -> Any:
 
 
 def initial(shapes: Shapes, rng: np.random.Generator) -> Arrays:
-    """Return initial parameters: Glorot's uniform weights, spectral weights of size 1/inputs, biases 0.
+    """Return random initial parameters of the given shapes; the end of a name determines the distribution.
 
-    From xi = 0 to 1, exp(mu xi) of poles mu decays by factors of e^0.5 to e^20, in up to four turns.
-
-    Glorot & Bengio, Understanding the difficulty of training deep feedforward neural networks (2010).
+    Biases are 0. Weights are uniform after Glorot & Bengio, Understanding the difficulty of training deep
+    feedforward neural networks (2010). Spectral weights are normal with standard deviation 1/inputs. Poles mu
+    make exp(mu xi) decay from xi = 0 to 1 by factors of e^0.5 to e^20, in up to four turns.
     """
     arrays: Arrays = {}
     for name, shape in shapes.items():

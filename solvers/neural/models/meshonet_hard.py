@@ -14,16 +14,16 @@ from meshonet.solvers.neural.samples import Samples
 
 @dataclass(frozen=True)
 class MeshONetHard(Architecture):
-    """MeshONet with exact Dirichlet conditions.
+    """MeshONet with exact boundary nodes.
 
     ::
 
         (x, y) = H + s * B(xi, eta) * branch(x_1, y_1 .. x_m, y_m) . trunk(lift(xi, eta))
 
-    H is the harmonic extension of the boundary, B is zero on the boundary, s is the size of the differences
-    of the training grids from H. For an O grid the lift is periodic in xi. With `modes`, B trunk is replaced
-    by the proper orthogonal decomposition of these differences, whose errors at sharp kinks of the boundary
-    are small.
+    H is the harmonic extension of the boundary. B is zero on the boundary. s is the root mean square
+    difference of the training grids from H. For O grids the lift is periodic in xi. With `modes`, the proper
+    orthogonal decomposition of these differences replaces B trunk, which reduces errors at sharp kinks of the
+    boundary.
     """
 
     base: ClassVar[Literal["none", "harmonic"]] = "harmonic"
@@ -50,9 +50,9 @@ class MeshONetHard(Architecture):
         return {**branch, **dense_shapes("trunk", (seen, *[self.width] * self.depth, self.features))}
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
-        """Return mean and standard deviation of the sensors, and the size and the modes of the `targets`.
+        """Return arrays by name that are computed from the training set: statistics of sensors and `targets`.
 
-        Modes have the shape (nodes, modes).
+        The modes of the targets have the shape (nodes, modes).
         """
         seen = np.array([sensors(boundary, self.sensors) for boundary in samples.boundaries()])
         spread = seen.std(axis=0)
@@ -67,7 +67,7 @@ class MeshONetHard(Architecture):
         return {**fixed, "fixed/modes": _modes(targets, self.modes)} if self.modes else fixed
 
     def seen(self, xp: Any, points: Any) -> Any:
-        """Return the trunk's inputs at `points` (p, 2): sines, cosines and B; with `modes`, `points`."""
+        """Return the trunk's inputs at `points` (p, 2): sines, cosines, B. With `modes`, return `points`."""
         if self.modes:
             return points
         xi, eta = points[:, :1], points[:, 1:]

@@ -18,15 +18,15 @@ SAME = 1e-4  # largest distance of a sensor, over the geometry's size, at which 
 
 @dataclass(frozen=True)
 class MGNet(Architecture):
-    """Networks N_g, one for each geometry, that are trained together on Winslow's equations and the boundary.
+    """One network N_g for each geometry g; all are trained together on Winslow's equations and the boundary.
 
     ::
 
         (x, y) = N_g(phi(xi, eta))    phi = (2 xi - 1, 2 eta - 1), or for O grids
                                       (sin 2 pi xi, cos 2 pi xi, 2 eta - 1)
-        loss   = mean |alpha X_xx - 2 beta X_xe + gamma X_ee|^2 + boundary * mean |X - U|^2
+        loss   = mean |alpha X_xx - 2 beta X_xe + gamma X_ee|^2 + rim * mean |X - U|^2
 
-    Lengths are relative to the size of each geometry.
+    U are the given boundary nodes. Lengths are relative to the size of each geometry.
     """
 
     physics: ClassVar[bool] = True
@@ -45,7 +45,7 @@ class MGNet(Architecture):
         return dense_shapes("net", sizes, stacked=frame.count)
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
-        """Return sensors (count, s, 2), centre (count, 2) and size (count, 1) of every geometry."""
+        """Return boundary points (count, s, 2), centre (count, 2), size (count, 1) of each geometry."""
         edges = samples.boundaries()
         outlines = [np.concatenate([b.south, b.north, b.west, b.east]) for b in edges]
         centre = np.array([0.5 * (o.min(axis=0) + o.max(axis=0)) for o in outlines])
@@ -60,7 +60,7 @@ class MGNet(Architecture):
         return scaled * net["fixed/size"][:, None] + net["fixed/centre"][:, None]
 
     def which(self, w: Weights, seen: Any) -> Any:
-        """Return the index of the network for each geometry: the network whose sensors are nearest."""
+        """Return the index of the network whose geometry has the nearest sensors, for each of `seen`."""
         return ((seen[:, None] - w["fixed/sensors"][None]) ** 2).sum(-1).sum(-1).argmin(1)
 
     def check(self, w: Weights, inputs: Weights) -> None:
@@ -74,7 +74,7 @@ class MGNet(Architecture):
             raise InputError(problem, "train it on this one too: it has a network for each geometry")
 
     def features(self, xp: Any, points: Any) -> Any:
-        """Return the networks' inputs phi (p, features) at `points` (p, 2) in (xi, eta)."""
+        """Return the inputs phi (p, features) of the networks at `points` (p, 2), given as (xi, eta)."""
         xi, eta = points[..., :1], points[..., 1:]
         if not self.periodic:
             return 2.0 * points - 1.0
@@ -82,7 +82,7 @@ class MGNet(Architecture):
         return xp.concatenate([xp.sin(turn * xi), xp.cos(turn * xi), 2.0 * eta - 1.0], -1)
 
     def slopes(self, xp: Any, points: Any) -> Sequence[Any]:
-        """Return features (p, features), and their first and second derivatives by xi and eta."""
+        """Return phi (p, features) at `points`, and its first and second derivatives by xi and eta."""
         f = self.features(xp, points)
         zero, two = 0.0 * f[:, :1], 0.0 * f[:, :1] + 2.0
         if not self.periodic:
@@ -97,7 +97,7 @@ class MGNet(Architecture):
 
 @dataclass(frozen=True)
 class MeshNet(MGNet):
-    """MGNet with the nodes of a coarse solved grid in its loss.
+    """MGNet with a further term in its loss, which compares with the nodes of a coarse solved grid.
 
     Chen et al., Developing a novel structured mesh generation method based on deep neural networks, Physics
     of Fluids 35 (2023) 097151.

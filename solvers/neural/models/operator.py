@@ -28,7 +28,7 @@ CLOSE = 1e-6  # largest error of that interpolation, relative to the answer, at 
 
 @dataclass(frozen=True)
 class PaperOperator(Operator):
-    """A trained model of `ARCHITECTURES`."""
+    """A trained model of the table `ARCHITECTURES`."""
 
     batched: ClassVar[bool] = False
 
@@ -38,7 +38,7 @@ class PaperOperator(Operator):
 
     @classmethod
     def of_file(cls, name: str, header: Mapping[str, Any], arrays: dict[str, Floats]) -> Self:
-        """Return the operator of a file's header and arrays."""
+        """Return the operator from the header and the arrays of a model file."""
         topology = header["topology"]
         frame = Frame(topology, int(header["ni"]), int(header["nj"]), int(header.get("count", 0)))
         if topology not in TOPOLOGIES or not 2 <= min(frame.ni, frame.nj) <= max(frame.ni, frame.nj) <= 4096:
@@ -52,7 +52,7 @@ class PaperOperator(Operator):
         return operator
 
     def facts(self) -> dict[str, Any]:
-        """Return the entries of a file's header that describe the model."""
+        """Return the header entries of the model file that describe the model."""
         frame, facts = self.frame, {"model": name_of(self.model), "settings": settings_of(self.model)}
         return {**facts, "topology": frame.topology, "ni": frame.ni, "nj": frame.nj, "count": frame.count}
 
@@ -75,10 +75,10 @@ class PaperOperator(Operator):
         return Solution(grid, "operator", model=self.name, seconds={"grid": spent}, notes=notes)
 
     def nodes(self, boundary: Boundary, *, paste: bool = True) -> tuple[Floats, float]:
-        """Return the nodes (ni, nj, 2), and the largest distance of predicted boundary nodes from `boundary`.
+        """Return nodes (ni, nj, 2), and the greatest distance of predicted boundary nodes from `boundary`.
 
-        With `paste`, boundary nodes are then replaced by those of `boundary`. Otherwise only the two sides of
-        the cut of an O grid are made equal.
+        With `paste`, the boundary nodes are those of `boundary`. Otherwise they are the predicted ones, and
+        only the two sides of the cut of an O grid are made equal.
         """
         answer = self.difference(boundary)
         if self.model.base == "harmonic":
@@ -96,9 +96,9 @@ class PaperOperator(Operator):
         return nodes, error
 
     def difference(self, boundary: Boundary) -> Floats:
-        """Return the network's output, minus the base, at the nodes of `boundary`'s grid (ni, nj, 2).
+        """Return the network's output (ni, nj, 2) at the nodes: the predicted grid minus the base grid.
 
-        Raises InputError: a boundary of another topology than the training grids'.
+        Raises InputError if `boundary` has another topology than the training grids.
         """
         self.check([boundary])
         ni, nj = boundary.ni, boundary.nj

@@ -9,10 +9,10 @@ from meshonet.geometry.blocks.boundary import Boundary
 
 
 def sensors(boundary: Boundary, count: int) -> Floats:
-    """Return (count, 2) points of the boundary at fixed parameters xi or eta, interpolated linearly.
+    """Return `count` points of the boundary (count, 2), interpolated linearly between its nodes.
 
-    On four-sided boundaries sensors start at the south-west corner and run counter-clockwise, at equal steps
-    of xi and eta. On O boundaries half of them, rounded up, are on the body, the others on the far field.
+    On four-sided boundaries they start at the south-west corner and run counter-clockwise, at equal steps of
+    xi and eta. On O boundaries half of them, rounded up, are on the body, the others on the far field.
     """
     if boundary.periodic:
         inner = count - count // 2
@@ -28,13 +28,13 @@ def sensors(boundary: Boundary, count: int) -> Floats:
 
 
 def square(ni: int, nj: int) -> Floats:
-    """Return the parameters xi, eta (ni * nj, 2) of a grid's nodes; eta varies fastest."""
+    """Return the parameters (ni * nj, 2), xi and eta from 0 to 1, of a grid's nodes; eta varies fastest."""
     xi, eta = np.linspace(0.0, 1.0, ni), np.linspace(0.0, 1.0, nj)
     return np.stack(np.meshgrid(xi, eta, indexing="ij"), axis=-1).reshape(-1, 2)
 
 
 def rim(ni: int, nj: int, topology: Topology) -> np.ndarray[Any, np.dtype[np.bool_]]:
-    """Return a mask (ni * nj,) of the nodes on the boundary, which does not include the cut of an O grid."""
+    """Return a mask (ni * nj,) of the boundary nodes of a grid; the cut of an O grid is no boundary."""
     on = np.zeros((ni, nj), dtype=bool)
     on[:, [0, -1]] = True
     if topology != "o":
@@ -43,9 +43,9 @@ def rim(ni: int, nj: int, topology: Topology) -> np.ndarray[Any, np.dtype[np.boo
 
 
 def lift(xp: Any, points: Any, powers: int) -> Any:
-    """Return sin, cos and powers 1 to `powers` of xi and eta (p, 4 + 2 powers): the paper's Lift-Layer.
+    """Return the paper's Lift-Layer: sines, cosines and powers of xi and eta (p, 4 + 2 powers).
 
-    `xp` is numpy or torch. Xiao et al., arXiv 2501.11937, section III.
+    `points` (p, 2) is an array of `xp`, numpy or torch. Xiao et al., arXiv 2501.11937, section III.
     """
     return xp.concatenate([xp.sin(points), xp.cos(points), *(points**q for q in range(1, powers + 1))], -1)
 

@@ -24,7 +24,7 @@ IDENTITY: Element = (False, False, False)  # of a boundary that stays as it is
 
 @dataclass(frozen=True)
 class Canonical:
-    """A boundary and its image in its canonical frame."""
+    """A boundary, and its image in a frame of reference that does not depend on position, scale or labels."""
 
     original: Boundary
     boundary: Boundary  # the same in the frame, its edges rounded and relabelled
@@ -34,7 +34,7 @@ class Canonical:
     symmetric: bool = False  # an O boundary that is its own mirror image
 
     def back(self, planes: Floats) -> Floats:
-        """Return a grid `planes` (2, ni, nj), transformed from the canonical frame to the boundary's."""
+        """Return a grid `planes` (2, ni, nj), moved from the canonical frame to that of the boundary."""
         z = planes[0] + 1j * planes[1]
         along, across, transposed = self.element
         if self.symmetric:
@@ -51,12 +51,11 @@ class Canonical:
 
 
 def canonical(boundary: Boundary) -> Canonical:
-    """Return a quad or O boundary in its canonical frame, or unchanged if rounding would merge its nodes.
+    """Return a four-sided or O boundary in its canonical frame; unchanged if rounding would merge its nodes.
 
-    Descent amplifies rounding errors: thirty steps around a corner turn 1e-16 into 1e-3. A domain that is
-    translated, rotated, scaled, mirrored or relabelled therefore has bitwise the same edges in the canonical
-    frame, rounded to 1e-9 of the domain's size. The frame of an O boundary has the cut from 0 to 1, that of a
-    quad is given by the corners. Of mirror images or relabellings, the one whose bytes come first is taken.
+    Boundaries that differ by translation, rotation, scaling, mirroring or names of sides have bitwise the
+    same nodes in the canonical frame, which are rounded to 1e-9 of the domain's size. Otherwise minimisation
+    would amplify their different rounding errors.
     """
     return _of_body(boundary) if boundary.periodic else _of_quad(boundary)
 

@@ -23,7 +23,7 @@ SHARES = (0.95, 0.9, 0.8)  # fractions of the network's displacement, tried in t
 
 
 def sides_of(boundaries: Sequence[Boundary]) -> Sides:
-    """Return the sides of boundaries that have the same node counts."""
+    """Return the four arrays of sides (batch, 2, n) of boundaries that have the same node counts."""
     names = ("south", "north", "west", "east")
     south, north, west, east = (
         np.ascontiguousarray(np.stack([getattr(boundary, name).T for boundary in boundaries]))
@@ -33,18 +33,18 @@ def sides_of(boundaries: Sequence[Boundary]) -> Sides:
 
 
 def rims(planes: Floats) -> Sides:
-    """Return the sides of grids (batch, 2, m, n)."""
+    """Return the four arrays of sides (batch, 2, n) of grids `planes` (batch, 2, m, n)."""
     south, north = np.ascontiguousarray(planes[..., 0]), np.ascontiguousarray(planes[..., -1])
     return south, north, np.ascontiguousarray(planes[:, :, 0]), np.ascontiguousarray(planes[:, :, -1])
 
 
 def thinned(sides: Sides, ni: int, nj: int) -> Sides:
-    """Return the sides reduced to ni and nj nodes, by linear interpolation at equal steps of the index."""
+    """Return the sides reduced to `ni` and `nj` nodes, interpolated linearly at equal steps of the index."""
     return between(sides[0], ni), between(sides[1], ni), between(sides[2], nj), between(sides[3], nj)
 
 
 def transfinite(sides: Sides) -> Floats:
-    """Return the nodes (batch, 2, ni, nj) by transfinite interpolation with arc-length parameters."""
+    """Return nodes (batch, 2, ni, nj) of transfinite interpolation with arc-length parameters."""
     nodes = np.empty((*sides[0].shape, sides[2].shape[-1]))
     laws = [arc_length_fraction(np.moveaxis(side, 1, -1)) for side in sides]
     for k, (x, y) in enumerate(nodes):
@@ -56,9 +56,9 @@ def transfinite(sides: Sides) -> Floats:
 def coarse_grids(sides: Sides, network: Network, head: int) -> Floats:
     """Return the nodes (batch, 2, m, n) of the network's grids inside `sides`.
 
-    `head` selects an output of the network, by its index in `encoding.HEADS`. Grids of the variational head
-    have 33 x 33 nodes; those of Winslow's head as many as the sides, at least 33 and at most 65 per
-    direction.
+    `head` is the index in `encoding.HEADS` of the method that the output of the network imitates. Grids for
+    the variational method have 33 x 33 nodes. Grids for Winslow's equations have as many nodes as the sides,
+    but at least 33 and at most 65 per direction.
     """
     base = transfinite(thinned(sides, LATENT, LATENT))
     shares = None if head == WINSLOW else _shares
@@ -76,12 +76,12 @@ def coarse_grids(sides: Sides, network: Network, head: int) -> Floats:
 
 
 def answered(z: Any, unit: Any, network: Moves, shares: Moves | None, xp: Any, around: bool = False) -> Any:
-    """Return grids `z` (batch, n, n), or strips (batch, m + 1, n) of bodies (`around`), moved by a network.
+    """Return complex grids `z` (batch, n, n), moved by Picard steps and then by a network.
 
-    `unit`: the same grids at unit size, and the factors (batch, 1, 1) that undo the scaling; `network`:
-    returns displacements, given the grids and the last displacements of the Picard steps; `shares`: returns
-    the fraction (batch, 1, 1) of displacements to apply, given grids and displacements; None: all; `xp`:
-    numpy or torch, the module of the arrays.
+    With `around`, `z` are O grids unrolled to strips (batch, m + 1, n). `unit` has the grids at unit size,
+    and factors (batch, 1, 1) that undo the scaling. `network` returns displacements from the grids and the
+    last Picard step. `shares` returns the fractions (batch, 1, 1) of displacements to apply, from grids and
+    displacements; None applies all. `xp` is the module of the arrays, numpy or torch.
     """
     sized, back = unit
     near, step = approach(sized, xp, around)
@@ -94,13 +94,13 @@ def answered(z: Any, unit: Any, network: Moves, shares: Moves | None, xp: Any, a
 
 
 def nearer(z: Any, unit: Any, xp: Any, around: bool = False) -> Any:
-    """Return grids `z` after the Picard steps that follow Winslow's output; parameters as in `answered`."""
+    """Return grids `z` after Picard steps towards Winslow's solution; parameters as in `answered`."""
     sized, back = unit
     return z + times(approach(sized, xp, around, AFTER, harmonic=False)[0] - sized, back)
 
 
 def in_frame(z: Any, xp: Any) -> tuple[Any, Any]:
-    """Return grids at unit size (`encoding.frame`), and the factors (batch, 1, 1) that undo the scaling."""
+    """Return grids at unit size (see `encoding.frame`), and factors (batch, 1, 1) that undo the scaling."""
     middle, factor = (value[:, None, None] for value in frame(z, xp))
     return times(z - middle, factor), factor.conj() / (factor.real**2 + factor.imag**2)
 
@@ -111,6 +111,6 @@ def _shares(near: Complexes, move: Complexes) -> Floats:
 
 
 def share(start: Complexes, answer: Complexes) -> float:
-    """Return the fraction of the way from `start` to `answer` (m, n) that is taken: 1 unless cells fold."""
+    """Return the fraction of the way from `start` to `answer` (m, n) to take: 1, but less if cells fold."""
     tried = (part for part in (1.0, *SHARES) if not count_folded(pairs_of(start + part * (answer - start))))
     return next(tried, 1.0)

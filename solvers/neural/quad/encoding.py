@@ -29,9 +29,9 @@ STRETCH = 30.0  # factor of small Picard steps in the inverse hyperbolic sine
 def frame(z: Any, xp: Any) -> tuple[Any, Any]:
     """Return for each complex grid of `z` (batch, n, n) its centre (batch,) and a complex factor (batch,).
 
-    The grid ``(z - centre) * factor`` has area 1. Its x axis is along the sum of two vectors: the mean vector
-    from west to east, and the mean vector from south to north rotated by a quarter turn. Only boundary nodes
-    are used. Sides that are named in another order turn or mirror the grid accordingly.
+    The grid ``(z - centre) * factor`` has area 1. Only boundary nodes are used. The x axis is along the sum
+    of two vectors: the mean vector from west to east, and the mean vector from south to north turned by -90
+    degrees.
     """
     south, north, west, east = z[:, :, 0], z[:, :, -1], z[:, 0], z[:, -1]
     outline = xp.concatenate(
@@ -46,17 +46,16 @@ def frame(z: Any, xp: Any) -> tuple[Any, Any]:
 
 
 def planes_of(z: Complexes) -> Floats:
-    """Return complex grids (batch, m, n) as planes (batch, 2, m, n) of x and y."""
+    """Return the coordinates x and y (batch, 2, m, n) of complex grids `z` (batch, m, n)."""
     return np.ascontiguousarray(np.stack([z.real, z.imag], axis=1))
 
 
 def features(z: Any, step: Any, xp: Any, around: bool = False) -> Any:
     """Return the network's inputs (batch, n, n, FEATURES) for normalised complex grids `z` (batch, n, n).
 
-    `step`: like `z`, the last Picard step (`picard.approach`); `around`: whether `z` are unrolled O grids
-    (batch, m + 1, n), whose last column is the first plus one period. For these the result is (batch, m, n,
-    FEATURES), and positions are relative to nodes at equal steps. Features are in the order of
-    `symmetry.SEEN`.
+    `step` (batch, n, n) is the last Picard step (see `picard.approach`). With `around`, `z` are O grids
+    unrolled to strips (batch, m + 1, n), whose last column is the first plus one period. The result then has
+    the shape (batch, m, n, FEATURES), and positions are relative to nodes at equal steps.
     """
     n = z.shape[-1]
     if around:

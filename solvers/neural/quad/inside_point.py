@@ -17,10 +17,10 @@ STEPS, STILL = 50, 1e-14  # most Newton steps, and the step over the body's size
 
 
 def inside(wall: Complexes) -> complex:
-    """Return the point inside a simple closed curve `wall` (n,) with the least repulsive potential.
+    """Return the point inside a closed curve `wall` (n,) where a repulsive potential is least.
 
-    The first node of the curve is not repeated. The potential V(p) = ∮ |p - x|⁻⁴ ds is infinite at the wall.
-    Of equal minima, the one nearest to the first node of the wall is taken.
+    The potential is V(p) = ∮ |p - x|⁻⁴ ds over the curve. Of equal minima, the one nearest to the first node
+    is taken. The first node is not repeated at the end.
     """
     size = float(np.abs(wall - wall[0]).max())
     curve = (wall - wall[0]) / size
@@ -39,8 +39,8 @@ def inside(wall: Complexes) -> complex:
 def slope(p: Any, wall: Any, xp: Any) -> tuple[Any, Any, Any]:
     """Return the gradient g and the second derivatives m and c of the potential of `inside` at the point `p`.
 
-    A step v of the point changes g by ``m v + c v̄``; m is real. `wall` (n,) is an array of `xp`, numpy or
-    torch.
+    A displacement v of the point changes g by ``m v + c v̄``; m is real. `wall` (n,) is an array of `xp`,
+    numpy or torch.
     """
     x, lengths = _pieces(wall, xp)
     o = p - x

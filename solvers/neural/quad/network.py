@@ -26,8 +26,8 @@ LINE = 64  # bytes that a row of weights is rounded up to
 def shapes(widths: Sequence[int], blocks: Sequence[int], heads: int) -> Shapes:
     """Return the names and shapes of the weights of a network.
 
-    `widths`: number of sets of eight channels on each level, the finest level first; `blocks`: number of
-    residual blocks on each level; `heads`: number of displacement fields in the output.
+    `widths` has for each level, the finest first, the number of channels divided by 8. `blocks` has the
+    number of residual blocks of each level. `heads` is the number of displacement fields in the output.
     """
     arrays: Shapes = {"lift": (widths[0], FEATURES), "lift_bias": (widths[0],)}
 
@@ -46,9 +46,9 @@ def shapes(widths: Sequence[int], blocks: Sequence[int], heads: int) -> Shapes:
 
 
 def sizes(tensors: Mapping[str, Reals]) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """Return widths and blocks of a network from the names and shapes of its weights `tensors`.
+    """Return `widths` and `blocks` (see `shapes`) of the network that has the weights `tensors`.
 
-    Raises ValueError: the tensors are not those of such a network.
+    Raises ValueError if they are not the weights of such a network.
     """
     if not {"lift", "project"} <= set(tensors):
         raise ValueError("no lift, or no project")
@@ -67,10 +67,10 @@ def sizes(tensors: Mapping[str, Reals]) -> tuple[tuple[int, ...], tuple[int, ...
 
 @lru_cache(maxsize=4)
 def rim_factor(m: int, n: int, around: bool) -> Floats:
-    """Return the factor (m, n) that multiplies displacements; it is 0 on the boundary.
+    """Return the factor (m, n) by which displacements are multiplied; it is 0 on the boundary.
 
-    The factor is the product of d / (d + 2) along xi and along eta, with `around` only along eta; d is the
-    number of nodes to the boundary.
+    The factor is the product of d / (d + 2) along xi and along eta, where d is the number of nodes to the
+    boundary. With `around` it depends on eta only.
     """
     along, across = (np.minimum(np.arange(k), np.arange(k)[::-1]).astype(np.float64) for k in (m, n))
     rise = np.multiply.outer(np.ones(m) if around else along / (along + 2.0), across / (across + 2.0))
@@ -78,7 +78,7 @@ def rim_factor(m: int, n: int, around: bool) -> Floats:
 
 
 class UNet(Generic[Field]):
-    """The sequence of the network's layers; subclasses define `layer`, `silu` and `finer`."""
+    """Base class that defines the sequence of layers; subclasses define `layer`, `silu` and `finer`."""
 
     def layer(self, name: str, x: Field, stride: int = 1, add: Field | None = None, room: str = "") -> Field:
         """Return the convolution of `x` with the weights of layer `name`, plus `add`.
@@ -88,15 +88,15 @@ class UNet(Generic[Field]):
         raise NotImplementedError
 
     def silu(self, x: Field, pad: int = 1) -> Field:
-        """Return x / (1 + exp(-x)), padded."""
+        """Return x / (1 + exp(-x)), padded by `pad` nodes."""
         raise NotImplementedError
 
     def finer(self, low: Field, skip: Field) -> Field:
-        """Return the sum of `skip` and of `low`, interpolated linearly to the finer level."""
+        """Interpolate `low` linearly to the finer level, and return its sum with `skip`."""
         raise NotImplementedError
 
     def through(self, h: Field, blocks: Sequence[int]) -> Field:
-        """Return the output for features `h`; `blocks` has the number of residual blocks on each level."""
+        """Return the output for features `h`; `blocks` has the number of residual blocks of each level."""
         h = self.layer("lift", h)
         skips: list[Field] = []
         coarsest = len(blocks) - 1
@@ -118,17 +118,18 @@ class UNet(Generic[Field]):
 
 
 class Network:
-    """The network of one set of weights, compiled (`kernels/neural/network.c`).
+    """The U-Net with one set of weights, evaluated by compiled code.
 
-    `weights` and `blocks` as in `shapes`, in any precision; `dtype` (float32 or float64) of the arithmetic;
-    `around`: for unrolled O grids, periodic along xi. On n = 33, 17, 9 and 5 nodes along each axis::
+    `weights` and `blocks` are those of `shapes`. `dtype` is the arithmetic, float32 or float64. With
+    `around`, grids are O grids, unrolled to strips that are periodic along xi. Levels have 33, 17, 9 and 5
+    nodes::
 
         h = lift(features)
         h = blocks(h);  h = down(silu(h))          on each level but the coarsest, which has one set of blocks
-        h = blocks(skip + finer(up(h)))            back up, finer: linear interpolation
-        d = m · project(silu(h))                   two components for each head, m = 0 on the rim
+        h = blocks(skip + finer(up(h)))            on the way up; finer: linear interpolation
+        d = m · project(silu(h))                   two components for each head; m = 0 on the boundary
 
-    with blocks (before and after) h + b(silu(a(silu(h)))) and 3 x 3 kernels in a, b and down.
+    A block is h + b(silu(a(silu(h)))). The layers a, b and down have 3 x 3 kernels.
     """
 
     def __init__(
@@ -173,9 +174,9 @@ class Network:
         return np.asarray(moved.view(np.complex128)[..., 0])
 
     def moves(self, near: Complexes, step: Complexes, head: int) -> Complexes:
-        """Return the displacements (batch, m, n) that one head (output) predicts for grids `near`.
+        """Return the displacements (batch, m, n) in the output number `head` for grids `near`.
 
-        `step`: the last Picard step towards `near`; `head`: index of the head.
+        `step` is the last Picard step towards `near`.
         """
         if self.around:
             return self(features(near, step, np, around=True), head)

@@ -23,11 +23,11 @@ COMPACT = 0.15  # least over largest distance of the wall from the middle, of bo
 
 
 def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) -> Floats:
-    """Return the nodes (batch, 2, 65, 33) of the network's grids of O `boundaries` with equal node counts.
+    """Return the nodes (batch, 2, 65, 33) of the network's grids for O `boundaries` with equal node counts.
 
-    `head` selects an output of the network, by its index in `encoding.HEADS`. Raises InputError: a wall,
-    reduced to 65 nodes, winds once neither around the centroid of the body nor around the point of
-    `inside_point.inside`.
+    `head` is the index in `encoding.HEADS` of the method that the output of the network imitates. Raises
+    InputError if the wall or far field, reduced to 65 nodes, winds once neither around the body's centroid
+    nor around the point of `inside_point.inside`.
     """
     walls, strips, centres, once = _strips(boundaries)
     if not once.all():
@@ -43,10 +43,11 @@ def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) ->
 
 
 def moved(base: Any, factor: Any, head: int, network: Moves, xp: Any) -> Any:
-    """Return unrolled O grids `base` (batch, m + 1, n) of equal steps, moved by the network.
+    """Return unrolled O grids `base` (batch, m + 1, n), which have equal steps, moved by the network.
 
-    The last row of a result repeats the first row, without the period. `factor`: (batch, 1, 1) scales the
-    grids to unit size; `network`: as in `coarse_grids.answered`; `xp`: numpy or torch.
+    The last row of the result equals the first, without the period. `factor` (batch, 1, 1) scales the grids
+    to unit size. `head` is the index of the output, `network` that of `coarse_grids.answered`, `xp` numpy or
+    torch.
     """
     strip = answered(base, (base * factor, 1.0 / factor), network, None, xp, around=True)
     if head == WINSLOW:

@@ -27,7 +27,7 @@ AUTO = {WINSLOW: 2, 1: 5}  # steps of "auto": multigrid cycles for Winslow's ans
 
 @dataclass(frozen=True)
 class QuadOperator(Operator):
-    """A trained quad network, for four-sided domains or for O grids around bodies."""
+    """A trained U-Net for four-sided domains, or for O grids around bodies."""
 
     widths: tuple[int, ...] = ()  # of the network
     blocks: tuple[int, ...] = ()
@@ -37,19 +37,19 @@ class QuadOperator(Operator):
 
     @classmethod
     def of_file(cls, name: str, header: Mapping[str, Any], arrays: dict[str, Floats]) -> Self:
-        """Return the operator of a file's header and arrays."""
+        """Return the operator from the header and the arrays of a model file."""
         widths, blocks = sizes(arrays)
         return cls(name, "o" if header.get("topology") == "o" else "quad", header, widths, blocks, arrays)
 
     def network(self, dtype: str = "float64") -> Network:
-        """Return the network in ``float64`` or ``float32`` arithmetic; it is built once."""
+        """Return the network in ``float64`` or ``float32`` arithmetic; each is built once."""
         if dtype not in self._networks:
             self._networks[dtype] = Network(self.weights, self.blocks, dtype, around=self.topology == "o")
         return self._networks[dtype]
 
     @property
     def goal(self) -> Goal:
-        """The method whose grids the operator imitates."""
+        """Name of the method whose grids the operator imitates."""
         return "winslow" if self.head == WINSLOW else "variational"
 
     def solve(
@@ -61,9 +61,9 @@ class QuadOperator(Operator):
         threads: int = 1,
         **_: Any,
     ) -> list[Solution]:
-        """Return a grid inside each boundary; its boundary nodes are bitwise those of the boundary.
+        """Return a grid inside each boundary; its boundary nodes are exactly those of the boundary.
 
-        Boundaries with equal node counts form batches. A solution's seconds are the time of the batch,
+        Boundaries with equal node counts form batches. The seconds of a solution are those of the batch,
         divided by the number of boundaries in it.
         """
         self.check(boundaries)

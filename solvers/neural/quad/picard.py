@@ -26,20 +26,19 @@ THIRD, FOURTH = np.array([[-0.5, 1.0, 0.0, -1.0, 0.5], [1.0, -4.0, 6.0, -4.0, 1.
 def approach(
     z: Any, xp: Any, around: bool = False, steps: int = STEPS, *, harmonic: bool = True
 ) -> tuple[Any, Any]:
-    """Return grids nearer to Winslow's than `z`, with the same boundaries, and the last step, both like `z`.
+    """Return grids nearer to Winslow's solution than `z`, with the same boundaries, and the last Picard step.
 
-    Each step inverts, by sine transforms, the operator with alpha / (alpha + gamma) and gamma / (alpha +
-    gamma) at their means over the domain. Three quarters of the leading truncation error of the differences
-    are corrected. ::
+    Each step inverts, by sine transforms, an operator with constant coefficients: means over the domain of
+    alpha / (alpha + gamma) and gamma / (alpha + gamma). Differences have three quarters of their leading
+    truncation error removed. ::
 
         alpha z_xixi - 2 beta z_xieta + gamma z_etaeta = 0,
         alpha = |z_eta|^2, beta = z_xi . z_eta, gamma = |z_xi|^2        of the previous iterate
 
-    `z`: (batch, n, n) complex grids of unit size, arrays of `xp` (numpy or torch); `around`: whether `z` are
-    strips (batch, m + 1, n), whose last column is the first plus one period; `steps`: number of Picard steps;
-    `harmonic`: whether to start from the harmonic grid; otherwise from `z`, accelerated by Anderson's method
-    with one previous iterate, J. ACM 12 (1965) 547-560. For NumPy, compiled code does the steps
-    (`kernels/neural/approach.c`).
+    `z` (batch, n, n) are complex grids of unit size, arrays of `xp`, numpy or torch. With `around`, they are
+    strips (batch, m + 1, n), whose last column is the first plus one period. `steps` is the number of steps.
+    With `harmonic`, steps start from the harmonic grid. Otherwise they start from `z` and are accelerated by
+    Anderson's method with one previous iterate, J. ACM 12 (1965) 547-560.
     """
     if xp is np:
         return _compiled(z, around, steps, harmonic)
@@ -81,7 +80,7 @@ def _extrapolated(correction: Any, step: Any, move: Any, xp: Any) -> Any:
 
 
 def nodes_after(n: int) -> int:
-    """Return the node count of the grid for steps after the network, for `n` nodes of the final grid."""
+    """Return the node count of the grid for steps after the network, if the final grid has `n` nodes."""
     return min(max(n, LATENT), FINER)
 
 

@@ -25,7 +25,8 @@ def polished(
 ) -> tuple[Floats, list[int]]:
     """Return polished nodes (batch, 2, ni, nj), and the number of steps taken for each grid.
 
-    `boundaries` have equal node counts; `steps`: largest number of Newton steps, descents and cycles.
+    `boundaries` have equal node counts. `steps` limits the number of steps of Newton's method, descent or
+    multigrid.
     """
     if topology == "quad":
         coarse = coarse_grids.coarse_grids(coarse_grids.sides_of(boundaries), network, head)

@@ -69,20 +69,18 @@ SEEN: Floats = np.stack([_seen(element) for element in ELEMENTS])  # (8, FEATURE
 
 
 def table(size: int) -> Integers:
-    """Return the indices (8, 8, size²) of the weights w (8 size²) that form the kernels K[h, g].
+    """Return the indices (8, 8, size²) of those weights w that form the convolution kernels K[h, g].
 
-    A layer's channels come in sets of eight, one for each symmetry h of the square, which varies fastest::
-
-        K[h, g](p) = w[h^-1 g](h^-1 p)
+    Channels come in sets of eight, one for each symmetry h of the square: K[h, g](p) = w[h⁻¹ g](h⁻¹ p).
     """
     count = size * size
     return np.asarray(RELATIVE[:, :, None] * count + TAPS[size].reshape(ORDER, 1, count))
 
 
 def convolution(weight: Any, places: Any, xp: Any) -> Any:
-    """Return the kernel (8 out, 8 in, size, size) of `weight` (out, in, 8, size, size).
+    """Return the equivariant kernel (8 out, 8 in, size, size) that `weight` (out, in, 8, size, size) defines.
 
-    `places` is the result of `table`; `xp` is numpy or torch, the module of the arrays.
+    `places` is the result of `table`; `xp` is the module of the arrays, numpy or torch.
     """
     out, into, _, size, _ = weight.shape
     spread = weight.reshape(out, into, -1)[:, :, places]
@@ -90,11 +88,11 @@ def convolution(weight: Any, places: Any, xp: Any) -> Any:
 
 
 def lift(weight: Any, seen: Any) -> Any:
-    """Return the first layer's matrix (8 out, FEATURES) from `weight` (out, FEATURES) and `SEEN`."""
+    """Return the matrix (8 out, FEATURES) of the first layer from `weight` (out, FEATURES) and `SEEN`."""
     return (weight[:, None, :, None] * seen).sum(2).reshape(ORDER * len(weight), -1)
 
 
 def projection(weight: Any, elements: Any, xp: Any) -> Any:
-    """Return the last layer's matrix (2 heads, 8 in), symmetrised, from `weight` (heads, 2, in)."""
+    """Return the symmetrised matrix (2 heads, 8 in) of the last layer from `weight` (heads, 2, in)."""
     back = weight[:, None, :, :, None] * xp.moveaxis(elements, 0, -1)[:, :, None]
     return back.sum(2).reshape(2 * len(weight), -1) / ORDER

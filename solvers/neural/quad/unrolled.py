@@ -13,7 +13,7 @@ TURN = 2.0 * np.pi  # once around, the period of a strip
 
 
 def middles(walls: Any, xp: Any = np) -> Any:
-    """Return the centroids (batch,) of the areas inside curves (batch, n) without a repeated first node."""
+    """Return the centroids (batch,) of areas inside curves (batch, n), whose first node is not repeated."""
     off = walls - walls[:, :1]  # near the origin, against cancellation
     ahead = xp.roll(off, -1, 1)
     cross = times(off.conj(), ahead).imag
@@ -21,10 +21,10 @@ def middles(walls: Any, xp: Any = np) -> Any:
 
 
 def unrolled(z: Any, centres: Any, xp: Any = np) -> tuple[Any, Any]:
-    """Return the strips i log(z - centre) of O grids `z` (batch, m + 1, n), and a mask (batch,).
+    """Return the strips i log(z - centre) of complex O grids `z` (batch, m + 1, n), and a mask (batch,).
 
-    `centres` (batch,) are complex. The first index of `z` runs around the body and repeats the first node.
-    The mask is true for grids that wind once around their centre; other strips are useless.
+    The first index of `z` runs around the body and repeats the first node. The mask is true for grids that
+    wind once around their centre; other strips are useless.
     """
     off = z - centres[:, None, None]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -40,10 +40,10 @@ def unrolled(z: Any, centres: Any, xp: Any = np) -> tuple[Any, Any]:
 
 
 def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any = np) -> tuple[Any, Any, Any]:
-    """Return the strips of `walls` (batch, m + 1, n), their centres (batch,), and the mask of `unrolled`.
+    """Unroll `walls` (batch, m + 1, n); return the strips, their centres (batch,) and the mask of `unrolled`.
 
-    Centres are the centroids of the bodies' closed walls `wall` (batch, ni) if `walls` wind once around them.
-    Otherwise they are the points that `inside` returns for the closed curves (m,) ``walls[k, :-1, 0]``.
+    The centre is the centroid of the body's closed curve in `wall` (batch, ni), if `walls` wind once around
+    it. Otherwise it is the point that `inside` returns for the curve ``walls[k, :-1, 0]``.
     """
     centres = middles(wall[:, :-1], xp)
     strips, once = unrolled(walls, centres, xp)
@@ -55,17 +55,17 @@ def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any 
 
 
 def even(strips: Any, n: int, xp: Any = np) -> Any:
-    """Return strips (batch, m + 1, n) with `n` equally spaced nodes from wall to far field of `strips`."""
+    """Return strips with the ends of `strips` (batch, m + 1, n), and `n` nodes at equal steps in between."""
     eta = xp.linspace(0.0, 1.0, n, dtype=strips.real.dtype, device=strips.device)
     return strips[:, :, :1] * (1.0 - eta) + strips[:, :, -1:] * eta
 
 
 def factors(strips: Any, xp: Any = np) -> Any:
-    """Return factors (batch,) for the lengths of strips (batch, m + 1, n): half a period then has area 1."""
+    """Return factors (batch,) that scale strips (batch, m + 1, n); half a period then has area 1."""
     heights = (strips[:, :-1, -1] - strips[:, :-1, 0]).imag.mean(1)
     return 1.0 / xp.sqrt(0.5 * TURN * heights)
 
 
 def rolled(strips: Any, centres: Any = 0.0, xp: Any = np) -> Any:
-    """Return the O grids (batch, m + 1, n) around `centres` (batch, 1, 1) of `strips`."""
+    """Return the O grids (batch, m + 1, n) around `centres` (batch, 1, 1) that unroll to `strips`."""
     return functions_of(xp).exp(times(-1j, strips)) + centres

@@ -22,7 +22,7 @@ ACCEPTED = 1e-4  # a slower one is still kept below this: the rest is in the hig
 
 @dataclass(frozen=True)
 class Strips:
-    """n strips, the conformal images of domains around bodies, as Fourier modes."""
+    """Conformal images (strips) of n domains around bodies, with Winslow's solutions, as Fourier modes."""
 
     wall: Complexes  # (n, 2 MODES + 1) modes of the position F on the wall
     far: Complexes  # (n, 2 MODES + 1) the same on the far field
@@ -38,10 +38,10 @@ class Strips:
 def solve_strips(
     boundaries: Iterable[Boundary], progress: Callable[[int, int], None] | None = None
 ) -> Strips:
-    """Return the strips of O boundaries; bodies without a conformal lift or a solution are omitted.
+    """Map O boundaries conformally to strips, solve Winslow's equations there, and return the strips.
 
-    `progress` is called with the counts of processed and of omitted boundaries. Raises InputError: no
-    boundary could be used, or one is not an O boundary.
+    Bodies without a conformal map or a solution are omitted. `progress` is called with the numbers of strips
+    and of omitted bodies. Raises InputError if no strip results, or if a boundary is no O boundary.
     """
     rows: list[tuple[Complexes, Complexes, Complexes]] = []
     left_out = 0
@@ -78,9 +78,9 @@ def _solved(boundary: Boundary) -> tuple[Complexes, Complexes, Complexes] | None
 class StripTargets:
     """Inputs (n, CHANNELS, COLUMNS) and (n, SCALARS), and wanted outputs (n, 2 Q, COLUMNS) of mean square 1.
 
-    R is Winslow's solution minus the harmonic extension of the walls (the base). An output times `scale`
-    gives the coefficients of R / size^2 in `basis` (Q, LEVELS - 2), the proper orthogonal decomposition
-    across the strip in the H1 inner product.
+    The wanted outputs represent R, Winslow's solution minus the harmonic extension of the walls. An output
+    times `scale` gives the coefficients of R / size^2 in `basis` (Q, LEVELS - 2), the proper orthogonal
+    decomposition across the strip in the H1 inner product.
     """
 
     channels: Floats

@@ -17,9 +17,9 @@ SLOPE = 0.3  # factor of slopes, which are larger than values by about their wav
 
 
 def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
-    """Return the network's input for strips with boundary values F on wall and far field.
+    """Return the network's inputs for strips whose walls have the Fourier modes `wall` and `far`.
 
-    `wall`, `far` (batch, 2 MODES + 1) are the Fourier modes of F. The input consists of three arrays:
+    `wall` and `far` have the shape (batch, 2 MODES + 1). The inputs are three arrays:
 
     - channels (batch, CHANNELS, COLUMNS): the harmonic extension of the walls and its slope along theta at
       the depths `DEPTHS`, both divided by the size;
@@ -40,10 +40,11 @@ def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
 
 
 def decode(coefficients: Any, basis: Any, scale: float, size: Any, xp: Any = np) -> Any:
-    """Return the Fourier modes (batch, 2 MODES + 1, LEVELS) of Winslow's solution minus the harmonic one.
+    """Return Fourier modes (batch, 2 MODES + 1, LEVELS) of Winslow's solution minus the harmonic extension.
 
-    `coefficients`: (batch, 2 Q, COLUMNS) outputs, real parts, then imaginary parts; `basis`: (Q, LEVELS - 2)
-    functions of the inner Chebyshev points; `scale`: of the training targets; `size`: (batch,) from `encode`.
+    `coefficients` (batch, 2 Q, COLUMNS) are the outputs of the network, real parts first, then imaginary
+    parts. `basis` (Q, LEVELS - 2) has the basis functions at the inner Chebyshev points. `scale` is that of
+    `StripTargets`, `size` (batch,) that of `encode`.
     """
     q = len(basis)
     c = from_columns(coefficients[:, :q] + 1j * coefficients[:, q:], xp)

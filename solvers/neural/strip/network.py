@@ -13,7 +13,7 @@ GATE = 0.3  # factor of b tanh(a)
 
 
 class StripNetwork:
-    """A Fourier neural operator along theta with one set of weights.
+    """A Fourier neural operator along theta, the periodic coordinate of strips, with one set of weights.
 
     ::
 
@@ -21,8 +21,8 @@ class StripNetwork:
         h <- h + E gelu(a + K h) + 0.3 b tanh(a)              three times, [a, b] = conv5(h), K spectral
         out = P h + K' h
 
-    `weights`: arrays by name (`shapes`), of the module `xp`, numpy or torch. Li et al., Fourier Neural
-    Operator for Parametric Partial Differential Equations (2020).
+    `weights` has arrays of `xp`, numpy or torch, by name (see `shapes`). Li et al., Fourier Neural Operator
+    for Parametric Partial Differential Equations (2020).
     """
 
     def __init__(self, weights: Mapping[str, Any], xp: Any = np) -> None:
@@ -50,9 +50,9 @@ class StripNetwork:
 
 
 def shapes(inputs: int, outputs: int, width: int, modes: Sequence[int]) -> dict[str, tuple[int, ...]]:
-    """Return the names and shapes of a network's weights.
+    """Return the shapes of a network's weights by name.
 
-    `modes` are the numbers of Fourier modes of the hidden layers, followed by that of the output layer.
+    `modes` has the numbers of Fourier modes of the hidden layers, then that of the output layer.
     """
     dense = {"lift": (2 * width, inputs, 1), "project": (outputs, width, 1)}
     mixing = {"spectral_out": (modes[-1], width, outputs, 2)}
@@ -64,7 +64,7 @@ def shapes(inputs: int, outputs: int, width: int, modes: Sequence[int]) -> dict[
 
 
 def check_shapes(weights: Mapping[str, Floats]) -> None:
-    """Raise ValueError or KeyError unless `weights` are those of a network, by names and shapes."""
+    """Raise ValueError or KeyError unless `weights` have the names and shapes of a network's weights."""
     width, inputs = weights["lift.weight"].shape[0] // 2, weights["lift.weight"].shape[1]
     spectral = [*(f"spectral.{n}.weight" for n in range(_depth(weights))), "spectral_out.weight"]
     modes = [weights[name].shape[0] for name in spectral]
@@ -94,9 +94,9 @@ def gelu(x: Any, xp: Any) -> Any:
 
 
 def spectral(mixing: Any, h: Any, xp: Any) -> Any:
-    """Return (d, batch, n): the channels of h (c, batch, n), mixed by a matrix for each Fourier mode.
+    """Multiply the channels of each Fourier mode of `h` (c, batch, n) by a matrix; return (d, batch, n).
 
-    `mixing` (modes, 2 c, 2 d) has a matrix for each mode; real and imaginary parts alternate in it.
+    `mixing` (modes, 2 c, 2 d) has a matrix for each mode, in which real and imaginary parts alternate.
     """
     spectrum = xp.fft.rfft(h)[..., : len(mixing)].swapaxes(0, 2)
     parts = xp.stack([spectrum.real, spectrum.imag], -1).reshape(len(mixing), h.shape[1], -1)

@@ -23,9 +23,9 @@ from meshonet.solvers.solution import Solution
 
 @dataclass(frozen=True)
 class StripOperator(Operator):
-    """A strip network with its encoding; without weights, it returns the harmonic extension of the walls.
+    """A trained network for airfoils; without weights, Winslow's solver starts from the harmonic grid.
 
-    `basis`: (Q, LEVELS - 2) basis functions of the network's targets; `scale`: size of the targets.
+    `basis` (Q, LEVELS - 2) and `scale` are those of the training (`StripTargets`).
     """
 
     weights: Mapping[str, Floats] = field(default_factory=dict)  # of the network, float64
@@ -35,7 +35,7 @@ class StripOperator(Operator):
 
     @classmethod
     def of_file(cls, name: str, header: Mapping[str, Any], arrays: dict[str, Floats]) -> Self:
-        """Return the operator of a file's header and arrays."""
+        """Return the operator from the header and the arrays of a model file."""
         weights = {key: array.astype(np.float64) for key, array in arrays.items()}
         basis, scale = weights.pop("basis"), float(header["scale"])
         check_shapes(weights)
@@ -46,12 +46,12 @@ class StripOperator(Operator):
         return cls(name, "o", header, weights, basis, scale, StripNetwork(weights))
 
     def residual(self, wall: Complexes, far: Complexes, hand: NDArray[np.intp] | None = None) -> Complexes:
-        """Return the modes (batch, 2 MODES + 1, LEVELS) of Winslow's solution minus the harmonic extension.
+        """Return modes (batch, 2 MODES + 1, LEVELS) of Winslow's solution minus the harmonic extension.
 
-        `wall`, `far`: (batch, 2 MODES + 1) modes of the strip's walls; `hand`: (batch,) result of
-        `meshonet.geometry.polygon.mirror.handedness`, so that mirror images get mirrored grids: -1 computes
-        the mirror image, whose modes are conjugate; 0 makes the output symmetric. Modes that Picard steps
-        cannot correct are zero.
+        `wall` and `far` (batch, 2 MODES + 1) are Fourier modes of the strip's two walls. `hand` (batch,), the
+        result of `meshonet.geometry.polygon.mirror.handedness`, makes the grids of mirror images mirror
+        images: -1 computes the mirror image, 0 makes the output symmetric. Modes that Picard steps cannot
+        correct are zero.
         """
         if self.network is None:
             return np.zeros((*wall.shape, LEVELS), complex)
@@ -65,7 +65,7 @@ class StripOperator(Operator):
         return answer * across().smooth[:, None]
 
     def solve(self, boundaries: Sequence[Boundary], polish: Polish = "auto", **_: Any) -> list[Solution]:
-        """Return a grid inside each O boundary; its boundary nodes are bitwise those of the boundary."""
+        """Return a grid inside each O boundary; its boundary nodes are exactly those of the boundary."""
         self.check(boundaries)
         if not self.network:
             return conformal.solve(boundaries, polish)
@@ -73,11 +73,11 @@ class StripOperator(Operator):
 
     @property
     def goal(self) -> Goal:
-        """The method whose grids the operator imitates."""
+        """Name of the method whose grids the operator imitates."""
         return "conformal"
 
     def expected_error(self, boundary: Boundary, solution: Solution) -> float:
-        """Return the relative L2 distance by which one more Picard step moves the nodes of a solution."""
+        """Return the relative L2 distance by which a further Picard step moves the nodes of a solution."""
         better = self.solve([boundary], (solution.cycles or 0) + 1)[0]
         if better.model is None:  # the step diverges
             return math.inf

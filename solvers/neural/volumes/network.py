@@ -28,7 +28,7 @@ Answer = Literal["valid", "pasted", "raw"]
 
 @dataclass(frozen=True)
 class VolumeMeshNet:
-    """Settings of 3DMeshNet."""
+    """Settings of the network 3DMeshNet."""
 
     width: int = 40  # of the hidden layers
     depth: int = 4
@@ -43,17 +43,17 @@ class VolumeMeshNet:
 
 @dataclass(frozen=True)
 class VolumeNetwork:
-    """Trained networks, one per geometry, at any resolution.
+    """Trained networks N_g, one for each geometry g, which can be evaluated at any number of nodes.
 
-    ``(x, y, z) = centre + size N_g(2 xi - 1, 2 eta - 1, 2 zeta - 1)``. `weights` include sensors
-    (count, s, 3), centres (count, 3) and sizes (count, 1) of the `count` geometries.
+    ``(x, y, z) = centre + size N_g(2 xi - 1, 2 eta - 1, 2 zeta - 1)``. `weights` also has points (count, s,
+    3) of the faces by which a geometry is recognised, centres (count, 3) and sizes (count, 1).
     """
 
     name: str
     weights: Weights
 
     def nodes(self, faces: SixFaces) -> Floats:
-        """Return the network's nodes (ni, nj, nk, 3). Raises InputError: an unknown geometry."""
+        """Return the predicted nodes (ni, nj, nk, 3). Raises InputError: a geometry without a network."""
         k = self._which(faces)
         net = {key: value[k : k + 1] for key, value in self.weights.items() if key.startswith("net/")}
         axes = [np.linspace(-1.0, 1.0, n) for n in faces.counts]
@@ -74,13 +74,13 @@ class VolumeNetwork:
 
 
 def sensors(faces: SixFaces) -> Floats:
-    """Return points (s, 3) of the faces at equal steps of the parameters."""
+    """Return points (s, 3) of the six faces at equal steps of their parameters."""
     few = faces.resampled((SENSORS, SENSORS, SENSORS))
     return np.concatenate([face.reshape(-1, 3) for face in few.faces])
 
 
 def scales(volumes: Sequence[SixFaces]) -> dict[str, Floats]:
-    """Return sensors (n, s, 3), centre (n, 3) and half the largest extent (n, 1) of the volumes."""
+    """Return points of the faces (n, s, 3), centre (n, 3) and half the greatest extent (n, 1) of volumes."""
     seen = np.array([sensors(faces) for faces in volumes])
     low, high = seen.min(axis=1), seen.max(axis=1)
     return {
@@ -91,7 +91,7 @@ def scales(volumes: Sequence[SixFaces]) -> dict[str, Floats]:
 
 
 def load_volume(name: str) -> VolumeNetwork:
-    """Return the networks of a model file. Raises InputError: the file is missing or for planar grids."""
+    """Return the networks in a model file. Raises InputError: no such file; a model of planar grids."""
     path = model_path(name)
     kind, header, arrays = read_model(path)
     if kind != VOLUME:
@@ -120,8 +120,9 @@ def _check(header: Mapping[str, Any], arrays: Mapping[str, Floats]) -> None:
 def infer_volume(faces: SixFaces, *, model: str, answer: Answer = "valid") -> Solution:
     """Return the grid inside `faces` by a trained network.
 
-    `answer`: ``raw`` returns the network's nodes; ``pasted`` replaces its faces by the given faces; ``valid``
-    also repairs folded cells. Raises InputError: no such model; a geometry that the model was not trained on.
+    `answer`: ``raw`` returns the predicted nodes, ``pasted`` replaces their faces by the given ones,
+    ``valid`` also repairs folded cells. Raises InputError if there is no such model, or if it does not know
+    the geometry.
     """
     network = load_volume(model)
     nodes = network.nodes(faces)
