@@ -34,7 +34,7 @@ _MANY, _SAMPLE = 1 << 17, 1 << 14  # values of which ranks are found by a sample
 
 
 def distinct(values: AnyArray) -> AnyArray:
-    """Return the sorted distinct values of an array (n,), as np.unique, which would load numpy.ma (25 ms)."""
+    """Return the sorted distinct values of an array (n,), as np.unique does, but without loading numpy.ma."""
     ordered = np.sort(values)
     return ordered[np.append(True, ordered[1:] != ordered[:-1])[: len(ordered)]]
 
@@ -47,7 +47,7 @@ def norms(vectors: Floats) -> Floats:
 
 
 def dots(one: Floats, other: Floats) -> Floats:
-    """Return the scalar products (...) of vectors (..., 2 or 3), added component by component for speed."""
+    """Return the scalar products (...) of vectors (..., 2 or 3)."""
     total = one[..., 0] * other[..., 0]
     for k in range(1, one.shape[-1]):
         total += one[..., k] * other[..., k]
@@ -60,12 +60,12 @@ def turned_left(vectors: Floats) -> Floats:
 
 
 def extent_of(points: Floats) -> float:
-    """Return the longest extent of `points` (n, d) along an axis."""
+    """Return the greatest extent of `points` (n, d) along any axis."""
     return float(np.ptp(points, axis=0).max())
 
 
 def ends_meet(points: Floats) -> bool:
-    """Return whether the last of `points` (n, d) repeats the first, up to rounding.
+    """Return whether the last of `points` (n, d) equals the first, up to rounding.
 
     >>> angles = np.linspace(0.0, 2 * np.pi, 9)
     >>> ends_meet(np.stack([np.cos(angles), np.sin(angles)], axis=1))
@@ -75,7 +75,7 @@ def ends_meet(points: Floats) -> bool:
 
 
 def rolled(values: AnyArray, by: int) -> Any:
-    """Return values (n, ...) rolled by `by` along the first axis; for few values faster than `np.roll`.
+    """Return `values` (n, ...) rolled by `by` along the first axis, as np.roll; faster for few values.
 
     >>> rolled(np.arange(5), 2).tolist()
     [3, 4, 0, 1, 2]
@@ -84,7 +84,7 @@ def rolled(values: AnyArray, by: int) -> Any:
 
 
 def cross2(u: Floats, v: Floats) -> Floats:
-    """Return the cross products u x v (...), scalars, of plane vectors (..., 2)."""
+    """Return the cross products u x v (...), which are scalars, of vectors (..., 2) in the plane."""
     return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
 
 
@@ -108,9 +108,9 @@ def wrapped(parts: Floats, least: float = -0.5) -> Floats:
 
 
 def shortest_ways(ways: Floats, length: float | Floats) -> Floats:
-    """Return the signed distances (...) by the shorter way around closed curves, for distances `ways` (...).
+    """Return signed distances (...) along closed curves, each by the shorter way around its curve.
 
-    `length` is the length of the curves.
+    `ways` (...) are signed distances by any way around. `length` is that of the curves.
 
     >>> shortest_ways(np.array([3.0, -3.0, 1.0]), 4.0).tolist()
     [-1.0, 1.0, 1.0]
@@ -119,14 +119,14 @@ def shortest_ways(ways: Floats, length: float | Floats) -> Floats:
 
 
 def arc_lengths(line: Floats) -> Floats:
-    """Return the arc lengths (..., n), from 0, at the nodes of lines (..., n, d)."""
+    """Return the arc lengths (..., n) at the nodes of lines (..., n, d), from 0 at the first node."""
     arcs = np.zeros(line.shape[:-1])
     np.cumsum(norms(np.diff(line, axis=-2)), axis=-1, out=arcs[..., 1:])
     return arcs
 
 
 def arc_parts(line: Floats) -> Floats:
-    """Return the arc lengths (..., n) at the nodes of lines (..., n, d) as fractions of the whole length."""
+    """Return the arc lengths (..., n) at the nodes of lines (..., n, d), divided by those of whole lines."""
     arcs = arc_lengths(line)
     return np.asarray(arcs / arcs[..., -1:])
 
@@ -143,19 +143,19 @@ def running_sums(values: Floats, count: int) -> Floats:
 
 
 def along_and_across(vectors: Floats, axis: Floats) -> tuple[Floats, Floats]:
-    """Return the scalar products (...) of `vectors` (..., 2) with `axis` (2,), and with its left normal."""
+    """Return two scalar products (...) of `vectors` (..., 2): with `axis` (2,), and with its left normal."""
     x, y = vectors[..., 0], vectors[..., 1]
     return x * axis[0] + y * axis[1], y * axis[0] - x * axis[1]
 
 
 def middle(values: Floats) -> float:
-    """Return the median of an array (n,) without NaN, as np.median, which would load numpy.ma (25 ms)."""
+    """Return the median of an array (n,) without NaN, as np.median does, but without loading numpy.ma."""
     ordered, half = np.sort(values), len(values) // 2
     return float(ordered[half] if len(values) % 2 else 0.5 * (ordered[half - 1] + ordered[half]))
 
 
 def percentiles_of(values: NDArray[Any], percents: Sequence[float]) -> list[float]:
-    """Return the percentiles of all `values`, bitwise those of np.percentile, which loads numpy.ma (25 ms).
+    """Return percentiles of all `values`, bitwise those of np.percentile, but without loading numpy.ma.
 
     >>> percentiles_of(np.array([[3.0, 1.0], [2.0, 4.0]]), (0, 50, 100))
     [1.0, 2.5, 4.0]
@@ -194,9 +194,9 @@ def read_only(values: AnyArray) -> AnyArray:
 
 
 def array_like(values: NDArray[Any], like: Any, xp: Any) -> Any:
-    """Return `values` as an array of `xp`, numpy or torch, on the device and in the precision of `like`.
+    """Return `values` as an array of `xp` (numpy or torch), on the device and in the precision of `like`.
 
-    Complex values stay complex, real ones real.
+    Complex values stay complex, real values stay real.
     """
     dtype = like.real.dtype
     if xp is np:
@@ -208,12 +208,12 @@ def array_like(values: NDArray[Any], like: Any, xp: Any) -> Any:
 
 
 def ring_of(nodes: AnyArray) -> AnyArray:
-    """Return the corners (4, ni-1, nj-1, ...) of the cells of `nodes` (ni, nj, ...), counter-clockwise."""
+    """Return the four corners (4, ni-1, nj-1, ...) of cells of `nodes` (ni, nj, ...), counter-clockwise."""
     return np.stack([nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]])  # type: ignore[return-value]
 
 
 def planar_nodes(ni: int, nj: int) -> Floats:
-    """Return an uninitialised (ni, nj, 2) array in planar layout: its x and y planes are each contiguous."""
+    """Return an uninitialised array (ni, nj, 2) in planar layout: x and y are each contiguous in memory."""
     return np.moveaxis(np.empty((2, ni, nj)), 0, -1)
 
 

@@ -36,7 +36,7 @@ sinh, cosh, tanh, arcsinh, arccosh = map(_kernel, (b"sinh", b"cosh", b"tanh", b"
 
 
 def arctan2(y: Any, x: Any) -> Any:
-    """Return the angle of the points (x, y) from -pi to pi, within 2 units in the last place."""
+    """Return the angle of the points (x, y) from -pi to pi, to within 2 units in the last place."""
     return _function_of_two(_native.angles_of, y, x)
 
 
@@ -52,7 +52,7 @@ def modulus(z: Any) -> Any:
 
 
 def times(a: Any, b: Any) -> Any:
-    """Return the product of complex numbers, with each real product and sum rounded (no fused multiply-add).
+    """Return the product of complex numbers, with each real product and sum rounded separately.
 
     Real numbers and tensors are multiplied as usual.
     """
@@ -86,15 +86,14 @@ def geomspace(start: float, stop: float, count: int) -> Floats:
 
 
 def functions_of(xp: Any) -> Any:
-    """Return the module with elementary functions for arrays of `xp`: `elementary` for numpy, else torch."""
+    """Return the elementary functions for arrays of `xp`, as a module: `elementary` for numpy, else torch."""
     return sys.modules[__name__] if xp is np else xp
 
 
 def product(a: Any, b: Any) -> Any:
     """Return the matrix product ``a @ b`` in double precision, with sums in a fixed order.
 
-    For a stack of matrices `b` (..., inner, columns), the terms of a sum are added one by one; `inner` should
-    be small.
+    For a stack of matrices `b` (..., inner, columns), terms are added one by one; `inner` should be small.
     """
     left, right = np.asarray(a), np.asarray(b)
     if left.dtype.kind == "c" or right.dtype.kind == "c":

@@ -61,7 +61,7 @@ class InputError(MeshonetError):
         return self.text(str)
 
     def text(self, spelling: Callable[[str], str]) -> str:
-        """Return the message, with `spelling` applied to the names of parameters in braces."""
+        """Return the message, with the function `spelling` applied to the names of parameters in braces."""
         parameter = spelling(self.parameter) if self.parameter else ""
         parts = (self.source, parameter, self.place, spelled(self.problem, spelling))
         text = ": ".join(part for part in parts if part)
@@ -69,14 +69,14 @@ class InputError(MeshonetError):
 
 
 def place_of(point: Iterable[float]) -> str:
-    """Return the position of a point in space as text, ``x=0.1, y=0.2, z=0.3``."""
+    """Return the position of a point (3,) as text, such as ``x=0.1, y=0.2, z=0.3``."""
     return ", ".join(f"{name}={value:.6g}" for name, value in zip("xyz", point, strict=True))
 
 
 def meant(word: str, known: Iterable[str], likeness: float = 0.6) -> str:
-    """Return ``did you mean ...?`` with the word in `known` most similar to `word`, or ''.
+    """Return ``did you mean ...?`` with the word of `known` that is most similar to `word`, or ''.
 
-    The similarity ratio, 0 to 1, must be at least `likeness`, unless `word` begins with a word of `known`.
+    Their similarity ratio, from 0 to 1, must be at least `likeness`, or `word` must begin with that word.
 
     >>> meant("max_angel", ["max_angle", "min_angle"])
     "did you mean 'max_angle'? "
@@ -112,7 +112,7 @@ def in_place(place: str) -> Iterator[None]:
 
 
 def spelled(text: str, spelling: Callable[[str], str] = str) -> str:
-    """Return `text` with `spelling` applied to the parameter names in braces; double braces become single.
+    """Return `text`, with the function `spelling` applied to parameter names in braces; {{ becomes {.
 
     >>> spelled("give {far_field} as 'a-{{index}}'", lambda name: "--" + name.replace("_", "-"))
     "give --far-field as 'a-{index}'"
@@ -149,13 +149,13 @@ class NoValidGridError(MeshonetError):
         return self.text(str)
 
     def text(self, spelling: Callable[[str], str]) -> str:
-        """Return the message, with `spelling` applied to the names of parameters in braces."""
+        """Return the message, with the function `spelling` applied to the names of parameters in braces."""
         cells = ", ".join(f"({cell})" for cell in self.worst[:_SHOWN])
         problem = spelled(self.problem, spelling)
         return f"{problem}; worst cells: {cells}" if cells else problem
 
 
 class SolverError(MeshonetError):
-    """Error: an iteration diverges or stalls, also when it is repeated with other settings."""
+    """Error: an iteration diverges or stalls, even when it is repeated with other settings."""
 
     exit_code = 3

@@ -21,22 +21,8 @@ _RIGHT_ANGLE = 2**-50  # largest cosine of the angle between columns that count 
 def solve(matrix: Any, right: Any) -> Floats:
     """Return the solutions x of ``matrix @ x = right`` by Gaussian elimination with partial pivoting.
 
-    Parameters
-    ----------
-    matrix
-        Shape (..., m, m).
-    right
-        Shape (..., m), one vector per matrix, or (..., m, n); the leading axes are those of `matrix`.
-
-    Returns
-    -------
-    Floats
-        Same shape as `right`.
-
-    Raises
-    ------
-    ValueError
-        A matrix is singular.
+    The matrices are (..., m, m). `right` is (..., m), a vector per matrix, or (..., m, n), with the same
+    leading axes; so is the result. Raises ValueError: a matrix is singular.
     """
     left = np.array(matrix, np.float64, order="C")
     values = np.asarray(right, np.float64)
@@ -49,13 +35,13 @@ def solve(matrix: Any, right: Any) -> Floats:
 
 
 def inverse(matrix: Any) -> Floats:
-    """Return the inverse of each matrix (..., m, m); a singular one raises ValueError."""
+    """Return the inverse of each matrix (..., m, m). Raises ValueError: a matrix is singular."""
     square = np.asarray(matrix, np.float64)
     return solve(square, np.broadcast_to(np.eye(square.shape[-1]), square.shape))
 
 
 def symmetric_eigen(matrix: Any) -> tuple[Floats, Floats]:
-    """Return ascending eigenvalues (..., m) and unit eigenvectors, in columns, of matrices (..., m, m).
+    """Return the ascending eigenvalues (..., m) of matrices (..., m, m), and unit eigenvectors as columns.
 
     By cyclic Jacobi rotations (Golub & Van Loan, Matrix Computations, 2013, section 8.5).
     """
@@ -84,9 +70,9 @@ def symmetric_eigen(matrix: Any) -> tuple[Floats, Floats]:
 
 
 def singular_values(matrix: Any) -> tuple[Floats, Floats, Floats]:
-    """Return u (n, m), descending s (m,) and v (m, m) with ``matrix = u @ diag(s) @ v`` (n, m).
+    """Return u (n, m), descending s (m,) and v (m, m) such that ``matrix`` (n, m) is ``u @ diag(s) @ v``.
 
-    Columns of u with s = 0 are 0. By one-sided Jacobi rotations (Hestenes, J. SIAM 6, 1958).
+    Columns of u for which s is 0 are 0. By one-sided Jacobi rotations (Hestenes, J. SIAM 6, 1958).
     """
     columns = np.array(matrix, np.float64)
     size = columns.shape[1]
@@ -111,7 +97,7 @@ def singular_values(matrix: Any) -> tuple[Floats, Floats, Floats]:
 
 
 def least_squares(matrix: Any, right: Any) -> Floats:
-    """Return the least-squares solution x (m,) or (m, k) of ``matrix @ x = right`` with minimum norm."""
+    """Return the least-squares solution, (m,) or (m, k), of ``matrix @ x = right`` with the smallest norm."""
     u, s, v = singular_values(matrix)
     seen = s > np.finfo(float).eps * len(u) * s[:1]
     share = np.where(seen, 1.0 / np.where(seen, s, 1.0), 0.0)
@@ -119,10 +105,10 @@ def least_squares(matrix: Any, right: Any) -> Floats:
 
 
 def nearest_rotation(maps: Any) -> Floats:
-    """Return the rotation nearest, in the Frobenius norm, to each matrix (..., d, d), with d 2 or 3.
+    """Return the rotation nearest, in the Frobenius norm, to each matrix (..., d, d), where d is 2 or 3.
 
-    In three dimensions by unit quaternions (Horn, J. Opt. Soc. Am. A 4, 1987); determinants may be zero or
-    negative.
+    Determinants may be zero or negative. By unit quaternions in three dimensions (Horn, J. Opt. Soc. Am. A 4,
+    1987).
     """
     m = np.asarray(maps, np.float64)
     if m.shape[-1] == 2:

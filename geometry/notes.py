@@ -13,13 +13,13 @@ class Change(str):
 
 
 class Advice(str):
-    """A note about the settings, which is the same for every shape of a batch."""
+    """A note on the settings, which is the same for all shapes of a batch."""
 
     __slots__ = ()
 
 
 def departure_note(what: str, off: float, unit: str = "") -> str:
-    """Return a note that the smooth curve `what` is up to `off` away from the polygon through its points."""
+    """Return a note: the smooth curve `what` is up to `off` away from the polygon through its points."""
     lines = f"up to {off:.2g}{unit} away from straight lines between them"
     return f"{what} through the points, {lines}; give more points where it matters"
 
@@ -34,7 +34,7 @@ def changes_in(notes: Iterable[str]) -> tuple[str, ...]:
 
 
 def change_facts(notes: Iterable[str]) -> dict[str, str]:
-    """Return the changes among `notes` as an entry of a grid's provenance; an empty dict if none."""
+    """Return the changes among `notes` as an entry of a grid's provenance; an empty dict if there is none."""
     changes = changes_in(notes)
     return {"changes": "; ".join(changes)} if changes else {}
 

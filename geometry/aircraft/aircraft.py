@@ -14,20 +14,20 @@ _TAPER = 0.02  # smallest ratio of the shortest to the longest chord: all sectio
 
 @dataclass(frozen=True, eq=False)
 class Aircraft:
-    """A body and wings that begin inside it: the half z >= 0, or both halves.
+    """A body and wings that begin inside it; the grid is around the half z >= 0 or around both halves.
 
     Parameters
     ----------
     body : Body
         The fuselage: a body of revolution, or a `LoftedBody`.
     wing : Stack or SurfaceWing
-        Sections of the wing from inside the body to the tip, or its surface. Its longest chord is the unit of
-        first-cell height and far field.
+        The wing, by its sections from inside the body to the tip or by its surface. Its longest chord is the
+        unit of the first-cell height and of the far field.
     name : str, optional
         Name of the aircraft.
     half : bool, optional
-        Whether the grid ends in the plane of symmetry; otherwise its mirror image is added, with the same
-        patch names.
+        Whether the grid ends in the plane of symmetry. If not, its mirror image is added, with the same patch
+        names.
     others : tuple of Stack or SurfaceWing, optional
         Further wings, such as a tail plane, canards or a `Fin`, each with its own name.
     axes : AircraftAxes, optional
@@ -38,7 +38,7 @@ class Aircraft:
     Raises
     ------
     InputError
-        A stack that is not a wing of airfoils with a tip that is wide enough; two patches with the same name.
+        A wing without tip, with a very short chord, or with sections that are no airfoils; equal patch names.
 
     Examples
     --------
@@ -72,12 +72,12 @@ class Aircraft:
 
     @property
     def wings(self) -> tuple[Stack | SurfaceWing, ...]:
-        """The wing and the others."""
+        """All wings: `wing`, then `others`."""
         return (self.wing, *self.others)
 
     @property
     def patches(self) -> tuple[tuple[str, str], ...]:
-        """Names of the patches of each wing and of its tip."""
+        """For each wing, the name of its patch and the name of the patch of its tip."""
         first = self.wing.name or "wing"
         return ((first, "tip"), *((each.name, f"{each.name}-tip") for each in self.others))
 

@@ -16,7 +16,7 @@ FLAT = 1e-6
 
 @dataclass(frozen=True)
 class AircraftAxes:
-    """Which axes of a file point upwards and along the span; x is along the body."""
+    """Which axes of a file point upwards and along the span; x is always along the body."""
 
     # up, span: 1 for y, 2 for z
     up: int = 1
@@ -25,12 +25,12 @@ class AircraftAxes:
 
     @property
     def description(self) -> str:
-        """Description of the axes for notes."""
+        """Description of the axes, as text for notes."""
         half = ">=" if self.sign > 0 else "<="
         return f"{_NAMES[self.up]} points up, and the half is that of {_NAMES[self.span]} {half} 0"
 
     def to_aircraft(self, points: Floats) -> Floats:
-        """Return the `points` (..., 3) of a file in the axes of the aircraft."""
+        """Convert `points` (..., 3) from the axes of the file to the axes of the aircraft."""
         return np.stack([points[..., 0], points[..., self.up], self.sign * points[..., self.span]], axis=-1)
 
     def to_file(self, grid: Grid) -> Grid:
@@ -53,7 +53,7 @@ FILE_AXES = AircraftAxes()
 
 
 def axes_of(points: Floats) -> AircraftAxes | None:
-    """Return the axes of a file with `points` (n, 3) on half of an aircraft; None if on both halves."""
+    """Return the axes of a file whose `points` (n, 3) are on half of an aircraft; None if on both halves."""
     flat = FLAT * float(np.ptp(points, axis=0).max())
     for span in (2, 1):
         for sign in (1, -1):

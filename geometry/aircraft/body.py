@@ -81,7 +81,7 @@ class Body:
 
     @cached_property
     def arc(self) -> Floats:
-        """(n,) arc length at the points, along chords."""
+        """Arc lengths (n,) at the given points, measured along straight lines between them."""
         return arc_lengths(self.meridian)
 
     @cached_property
@@ -90,7 +90,7 @@ class Body:
 
     @property
     def length(self) -> float:
-        """Arc length of the meridian."""
+        """Arc length of the whole meridian."""
         return float(self.arc[-1])
 
     @property
@@ -126,7 +126,7 @@ class Body:
         return np.stack([x, self.y - r * cos(theta), r * sin(theta)], axis=-1)
 
     def arc_at(self, x: Floats) -> Floats:
-        """Return the arc length (n,) at x (n,), within the body."""
+        """Return arc lengths (n,) of the meridian at positions `x` (n,), which are clipped to the body."""
         x = np.clip(x, self.meridian[0, 0], self.meridian[-1, 0])
         s = monotone_cubic(self.meridian[:, 0], self.arc, x, linear=True)
         for _ in range(_STEPS):  # Newton's method
@@ -138,7 +138,7 @@ class Body:
         return np.asarray(s)
 
     def arcs_near(self, points: Floats) -> Floats:
-        """Return arc lengths (n,) on the meridian nearest to x and radius `points` (n, 2), nose to tail."""
+        """Return arc lengths (n,) of the meridian's points nearest to `points` (n, 2), from nose to tail."""
         s = arc_lengths(points)
         s *= self.length / s[-1]
         for _ in range(_STEPS):  # Newton's method for the foot of each point
@@ -148,12 +148,12 @@ class Body:
         return s
 
     def outside(self, points: Floats) -> Floats:
-        """Return the radial distances (n,) of points (n, 3) from the surface; negative inside."""
+        """Return the radial distances (n,) of `points` (n, 3) from the surface; negative inside the body."""
         r = self._spline(self.arc_at(points[:, 0]))[:, 1]
         return np.asarray(np.hypot(points[:, 1] - self.y, points[:, 2]) - r)
 
     def beside(self, point: Floats) -> str:
-        """Return, as text, how far a `point` (3,) is from the axis, and the body's radius at that x."""
+        """Return a text with the distance of a `point` (3,) from the axis, and the radius at the same x."""
         away, radius = np.hypot(point[1] - self.y, point[2]), float(np.interp(point[0], *self.meridian.T))
         return f"{away:.4g} from its axis, where its radius is {radius:.4g}"
 

@@ -26,7 +26,7 @@ _ROUND = 1e-6  # largest difference of the radii of a cut through a body of revo
 
 @dataclass(frozen=True, eq=False)
 class BodyCuts:
-    """Cross-sections of the half z >= 0 of a body in planes of constant x."""
+    """Cross-sections, in planes of constant x, of the half z >= 0 of a body."""
 
     x: Floats  # (n,) ascending positions of the planes, without nose and tail
     points: tuple[Floats, ...]  # (k, 2) y and z of each cut, from keel to crown
@@ -47,10 +47,11 @@ class BodyCuts:
 
 
 def body_cuts(patches: Sequence[Floats], name: str) -> BodyCuts:
-    """Return cuts through the half z >= 0 of a body with the surface `patches` (ni, nj, 3).
+    """Return cross-sections of the half z >= 0 of a body whose surface consists of `patches` (ni, nj, 3).
 
-    Cuts are at x of nodes in the plane of symmetry, and close to corners of keel and crown. An end that is
-    not a point gets a cap: half an ellipsoid, half as long as the end is high.
+    The cuts are at the x of nodes in the plane of symmetry. More cuts are added close to corners of the keel
+    and of the crown. An end that is not a point gets a cap: half an ellipsoid whose length is half the height
+    of the end. `name` is used in messages.
 
     Raises InputError: a surface with holes, or with fewer than 4 nodes in the plane of symmetry.
     """

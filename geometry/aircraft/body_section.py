@@ -25,14 +25,14 @@ _IN_PLANE = 1e-6  # rounding of coordinates: largest distance of an end from z =
 class BodySection:
     """A cross-section of a body in a plane of constant x, symmetric about z = 0.
 
-    Without width, height and points it is a single point, the nose or the tail.
+    If width, height and points are left out, it is a single point: the nose or the tail.
 
     Parameters
     ----------
     x : float
         Position of the plane.
     y : float, optional
-        Coordinate y of the centre of a superellipse, or displacement of `points` along y.
+        For a superellipse, the y of its centre. For `points`, their displacement along y.
     width, height : float, optional
         Size of a superellipse.
     exponent : float, optional
@@ -43,8 +43,8 @@ class BodySection:
     Raises
     ------
     InputError
-        A width without a height; sizes or an exponent out of range; points that do not begin and end at z =
-        0, have a sharp corner, or are met twice by a ray from the middle.
+        A width without a height, or the reverse; a value out of range; points that do not begin and end at z
+        = 0, that have a sharp corner, or whose curve crosses a ray from the middle twice.
 
     Examples
     --------
@@ -86,7 +86,7 @@ class BodySection:
 
     @property
     def middle(self) -> float:
-        """Height of the middle between keel and crown."""
+        """The y half way between keel and crown."""
         return self.y if self.points is None else self.y + 0.5 * float(self.points[0, 0] + self.points[-1, 0])
 
     @property
@@ -103,9 +103,9 @@ class BodySection:
 
     @property
     def shape(self) -> Floats:
-        """Distances (ANGLES,) of the curve from the middle, at equal angles from keel to crown.
+        """Distances (ANGLES,) of the curve from the section's middle, at equal angles from keel to crown.
 
-        Lengths are divided by half the width and half the height, so that an ellipse has distances 1.
+        Lengths along z are divided by half the width, lengths along y by half the height: 1 for an ellipse.
         """
         even = np.linspace(0.0, math.pi, ANGLES)
         if self.points is not None:

@@ -26,7 +26,7 @@ class AircraftDimensions:
 
     @property
     def lines(self) -> dict[str, str]:
-        """Lines of text of the report, by heading."""
+        """Lines of text for the report, by their heading."""
         spans = "".join(f"; {name} {span:.4g} from tip to tip" for name, span in self.spans.items())
         fins = "".join(f"; {name} up to y={y:.4g}" for name, y in self.fins.items())
         across = f"{self.width:.4g} wide and {self.height:.4g} high"

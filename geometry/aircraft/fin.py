@@ -15,14 +15,14 @@ _POINTS = 65  # points of a side that are compared
 
 @dataclass(frozen=True, eq=False)
 class Fin(Stack):
-    """A wing of symmetric sections in the plane of symmetry, the first one inside the body.
+    """A wing of symmetric sections in the plane of symmetry; its first section is inside the body.
 
-    The parameters are those of `Stack`. The z of a section is its height y in the axes of the aircraft.
+    The parameters are those of `Stack`; the z of a section is its height, y in the axes of the aircraft.
 
     Raises
     ------
     InputError
-        As for `Stack`; also a section with camber or twist, or outside the plane of symmetry.
+        The errors of `Stack`; a section with camber or twist, or outside the plane of symmetry.
 
     Examples
     --------

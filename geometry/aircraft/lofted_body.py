@@ -24,10 +24,11 @@ _LONGEST = 0.1  # largest distance of sections, in body lengths, without points 
 class LoftedBody(Body):
     """A body given by cross-sections, with a spline surface through them.
 
-    The points of the surface are (x, middle - up * shape * cos(theta), across * shape * sin(theta)), at the
-    arc length s of the meridian and the angle theta. In a section, across is half the width, up half the
-    height, and middle the y half way between keel and crown. ``meridian`` and ``y`` are those of a similar
-    body of revolution, whose radius is the mean of across and up.
+    At the arc length s of the meridian and the angle theta, a point of the surface is (x, middle - up * shape
+    * cos(theta), across * shape * sin(theta)). `across` is half the width of the section, `up` half its
+    height, `middle` the y half way between keel and crown, and `shape` a distance as in `BodySection.shape`.
+    The attributes ``meridian`` and ``y`` describe a similar body of revolution, whose radius is the mean of
+    `across` and `up`.
 
     Parameters
     ----------
@@ -98,7 +99,7 @@ class LoftedBody(Body):
 
     @property
     def arcs(self) -> Floats:
-        """(n,) arc length of the meridian at sections."""
+        """Arc lengths (n,) of the meridian at the sections."""
         return self.arc[self._at]
 
     @property
@@ -138,13 +139,13 @@ class LoftedBody(Body):
         return np.ascontiguousarray(np.stack([spline.values, spline.slopes], axis=-1))
 
     def sizes(self, s: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return half the width, half the height and the y of the middle, (n,) each, at arc lengths (n,)."""
+        """Return half the width, half the height and the y of the middle, each (n,), at arc lengths `s`."""
         x, radius = self.meridional(s).T
         flatness = self._flatness(s)
         return radius * flatness, radius * (2.0 - flatness), self._middle(x)
 
     def shape(self, s: Floats, theta: Floats) -> Floats:
-        """Return distances (n,) from the middle as in `BodySection.shape`, at `s` and `theta` (n,)."""
+        """Return the distances (n,) from the middle, as `BodySection.shape`, at `s` (n,) and `theta` (n,)."""
         arcs = self.arcs
         before = np.clip(np.searchsorted(arcs, s, side="right") - 1, 0, len(arcs) - 2)
         h = arcs[before + 1] - arcs[before]
@@ -157,7 +158,7 @@ class LoftedBody(Body):
         return hermite_piece((s - arcs[before]) / h, start, stop, h * begin, h * end)
 
     def points(self, s: Floats, theta: Floats) -> Floats:
-        """Return points (..., 3) at arc lengths and angles (...)."""
+        """Return points (..., 3) at arc lengths `s` (...) and angles `theta` (...) in radians."""
         s, theta = np.broadcast_arrays(s, theta)
         arcs, angles = s.ravel(), theta.ravel()
         across, up, middle = self.sizes(arcs)
@@ -166,7 +167,7 @@ class LoftedBody(Body):
         return np.stack([self.meridional(arcs)[:, 0], y, z], axis=-1).reshape(*s.shape, 3)
 
     def outside(self, points: Floats) -> Floats:
-        """Return distances (n,) of points (n, 3) from the surface along rays from the middle; inside < 0."""
+        """Return distances (n,) of `points` (n, 3) from the surface on rays from the middle, < 0 inside."""
         s = self.arc_at(points[:, 0])
         across, up, middle = self.sizes(s)
         y, z = points[:, 1] - middle, np.abs(points[:, 2])
@@ -175,7 +176,7 @@ class LoftedBody(Body):
         return np.asarray(np.hypot(y, z) - shape * np.hypot(up * cos(angles), across * sin(angles)))
 
     def beside(self, point: Floats) -> str:
-        """Return the size of the section at the x of a `point` (3,), as text."""
+        """Return a text with the size of the section at the x of a `point` (3,)."""
         across, up, middle = (float(each[0]) for each in self.sizes(self.arc_at(point[:1])))
         low, high = middle - up, middle + up
         return f"where its section is from y={low:.4g} to {high:.4g} and {2.0 * across:.4g} wide"

@@ -24,15 +24,12 @@ _LEVELS = 33  # number of heights between root and tip at which chords are measu
 class SurfaceWing:
     """A wing given by strips of nodes from root to tip, with straight lines along the span.
 
-    Strips follow each other from the trailing edge over the upper side to the nose and back. The nodes of a
-    strip at a station are on a cubic spline; z rises from station to station. The wing ends in a plane of
-    constant z (`ending`).
+    A strip is an array (stations, n, 3): n nodes around the section at each station along the span. The
+    strips follow each other around the section, from the trailing edge over the upper side to the nose and
+    back. The nodes of a strip at a station are on a cubic spline. z increases from station to station. The
+    wing ends in a plane of constant z.
 
-    Raises
-    ------
-    InputError
-        A strip that is no array (stations, n, 3); a line along which z does not rise; a wing without
-        thickness.
+    Raises InputError: a strip of another shape; a line along the span on which z does not increase.
     """
 
     strips: tuple[Floats, ...]  # (stations, n, 3) nodes of each strip
@@ -55,7 +52,10 @@ class SurfaceWing:
 
     @classmethod
     def ending(cls, strips: tuple[Floats, ...], name: str = "wing") -> Self:
-        """Return the wing of `strips` up to the last station, or to where a closing tip begins to be thin."""
+        """Return the wing of `strips`, up to where the tip becomes thin or to the last station.
+
+        Raises InputError: a wing without thickness.
+        """
         strips = tuple(map(_rising, strips))
         end = min(float(strip[-1, :, 2].min()) for strip in strips)
         wing = cls(strips, end, name)
@@ -76,36 +76,36 @@ class SurfaceWing:
 
     @property
     def z(self) -> Floats:
-        """Heights z (n,), from the lowest height that all lines reach up to the tip."""
+        """Equally spaced z (n,), from the lowest z that all lines along the span reach to the tip."""
         begin = max(float(strip[0, :, 2].max()) for strip in self.strips)
         return np.linspace(begin, self.height, _LEVELS)
 
     @property
     def chords(self) -> Floats:
-        """(n,) chords at heights `z`."""
+        """Chords (n,) of the sections at `z`."""
         return self.sizes(self.z)[0]
 
     @property
     def chord(self) -> float:
-        """Largest chord."""
+        """The longest of `chords`."""
         return float(self.chords.max())
 
     @property
     def end(self) -> tuple[float, float, float]:
-        """Nose of the last section."""
+        """Nose of the last section, as x, y, z."""
         x, y, z = on_line(self.line(self.nose), np.array([self.height]))[0].tolist()
         return x, y, z
 
     @cached_property
     def arcs(self) -> Floats:
-        """Width (strips,) of each strip, along the section at half span, in chords."""
+        """Width of each strip in chords (strips,), measured along the section at half span."""
         z = self.z[[_LEVELS // 2]]
         lengths = [float(norms(np.diff(at_heights(strip, z)[0], axis=0)).sum()) for strip in self.strips]
         return np.array(lengths) / self.sizes(z)[0]
 
     @cached_property
     def nose(self) -> float:
-        """Place of the nose (see `line`)."""
+        """Place of the nose around the section (see `line`)."""
         z = self.z[[_LEVELS // 2]]
         rows = [at_heights(strip, z)[0] for strip in self.strips]
         edge = 0.5 * (rows[0][0] + rows[-1][-1])
@@ -119,14 +119,14 @@ class SurfaceWing:
         return number + float(way[int(apart[number].argmax())] / way[-1])
 
     def line(self, place: float) -> Floats:
-        """Return the line (stations, 3) along the span that begins at a `place` around the section.
+        """Return the line (stations, 3) along the span at a `place` around the section.
 
-        The integer part of `place` is the index of a strip, the fraction is the position across the strip.
+        The integer part of `place` is the index of a strip. Its fraction is the position across this strip.
         """
         return self.lines(np.array([place]))[0]
 
     def lines(self, places: Floats) -> list[Floats]:
-        """Return the lines (stations, 3) at ascending places (n,); see `line`."""
+        """Return the lines (stations, 3) along the span at ascending `places` (n,); see `line`."""
         numbers = np.minimum(places.astype(int), len(self.strips) - 1)
         out: list[Floats] = []
         for number in range(len(self.strips)):
@@ -135,11 +135,11 @@ class SurfaceWing:
         return out
 
     def arc(self, place: float) -> float:
-        """Return the length in chords from the upper corner of the base to a `place`, at half span."""
+        """Return the length in chords from the upper trailing edge to a `place` (`line`), at half span."""
         return float(np.interp(place, np.arange(len(self.strips) + 1), self._bounds))
 
     def places(self, arcs: Floats) -> Floats:
-        """Return the places (n,) at lengths (n,): the inverse of `arc`."""
+        """Return the places (n,) at lengths `arcs` (n,): the inverse of `arc`."""
         return np.interp(arcs, self._bounds, np.arange(len(self.strips) + 1))
 
     @property
@@ -147,7 +147,7 @@ class SurfaceWing:
         return np.append(0.0, np.cumsum(self.arcs))
 
     def base(self, z: Floats) -> Floats:
-        """Return the thickness (n,) of the blunt trailing edge in chords, at heights z (n,)."""
+        """Return the thickness (n,) of the blunt trailing edge in chords, at positions `z` (n,)."""
         upper, lower = self.edges(z)
         across = upper - lower
         along = 0.5 * (upper + lower) - on_line(self.line(self.nose), z)
@@ -155,11 +155,11 @@ class SurfaceWing:
         return np.asarray(np.abs(square) / (along[:, :2] ** 2).sum(axis=1))
 
     def edges(self, z: Floats) -> tuple[Floats, Floats]:
-        """Return the upper and the lower corners (n, 3) of the trailing edge at heights z (n,)."""
+        """Return the upper and the lower corners (n, 3) of the trailing edge at positions `z` (n,)."""
         return on_line(self.line(0.0), z), on_line(self.line(float(len(self.strips))), z)
 
     def opened(self, least: float) -> Self:
-        """Return the wing with a base at least `least` chords thick, and a note if the wing is changed.
+        """Return the wing with a trailing edge at least `least` chords thick; a change is noted.
 
         The added thickness is proportional to the distance from the nose.
         """
@@ -195,7 +195,7 @@ class SurfaceWing:
         return np.stack(rows)
 
     def sizes(self, z: Floats) -> tuple[Floats, Floats]:
-        """Return the chord (n,) and the largest thickness (n,) of the sections at heights z (n,)."""
+        """Return the chord (n,) and the largest thickness (n,) of the sections at positions `z` (n,)."""
         loops = np.concatenate([at_heights(strip, z) for strip in self.strips], axis=1)
         chord = loops[:, 0] + loops[:, -1]
         apart = norms(loops - 0.5 * chord[:, None])

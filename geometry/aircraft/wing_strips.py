@@ -31,11 +31,12 @@ class _Strip:
 
 
 def wing_strips(patches: Sequence[Floats], name: str) -> tuple[tuple[Floats, ...], tuple[int, ...]]:
-    """Return the strips (stations, n, 3) of a `SurfaceWing`, and the indices of patches that close the tip.
+    """Return the strips (stations, n, 3) of a `SurfaceWing`, and the indices of patches that close its tip.
 
     `patches` (ni, nj, 3) form the surface of a wing in the half z >= 0. Patches on a blunt base are left out.
+    `name` is used in messages.
 
-    Raises InputError: patches are not next to each other around the wing or along the span.
+    Raises InputError: patches that are not next to each other around the wing, or not along the span.
     """
     turned = [_from_root(patch) for patch in patches]
     spans = np.array([float((nodes[-1, :, 2] - nodes[0, :, 2]).mean()) for nodes in turned])
@@ -60,12 +61,12 @@ def wing_strips(patches: Sequence[Floats], name: str) -> tuple[tuple[Floats, ...
 
 
 def at_heights(strip: Floats, z: Floats) -> Floats:
-    """Return the nodes (k, n, 3) of a strip (stations, n, 3) at heights z (k,), also extrapolated."""
+    """Return the nodes (k, n, 3) of a strip (stations, n, 3) at positions `z` (k,), also extrapolated."""
     return np.stack([on_line(strip[:, k], z) for k in range(strip.shape[1])], axis=1)
 
 
 def on_line(line: Floats, z: Floats) -> Floats:
-    """Return points (k, 3) on a line (stations, 3) at heights z (k,), also extrapolated."""
+    """Return points (k, 3) on a line (stations, 3) at positions `z` (k,), also extrapolated."""
     return monotone_cubic(line[:, 2], line, z, linear=True)
 
 

@@ -17,11 +17,11 @@ from meshonet.geometry.errors import InputError
 
 
 def across(grid: Grid, connection: Connection, depth: int) -> tuple[Floats, Floats]:
-    """Return the rows of nodes on both sides of a connection: in its own block, and in the donor block.
+    """Return rows of nodes on both sides of a connection: first in its own block, then in the donor block.
 
-    Both arrays are (depth, n, d), in volumes (depth, n, m, 3), with fewer rows if the block has fewer. The
-    row on the connection comes first. Nodes in both arrays are in the order of the side. Rows of the side are
-    moved by the periodic motion, if there is one.
+    Both arrays are (depth, n, d), or (depth, n, m, 3) in volumes. A block with fewer than `depth` rows gives
+    fewer. The first row is on the connection. Both arrays have the node order of the own side. If the
+    connection is periodic, its motion is applied to the own rows.
     """
     own, donor = (rows_beside(grid, *end, depth) for end in connection.ends)
     if connection.transform:
@@ -32,7 +32,7 @@ def across(grid: Grid, connection: Connection, depth: int) -> tuple[Floats, Floa
 
 
 def planar(grid: Grid) -> None:
-    """Raise InputError unless all blocks are two-dimensional, in the plane."""
+    """Raise InputError unless all blocks of `grid` lie in the plane, with nodes (ni, nj, 2)."""
     for number, block in enumerate(grid.blocks):
         if block.nodes.shape[2:] != (2,):
             sizes = " x ".join(map(str, block.counts))
@@ -41,13 +41,13 @@ def planar(grid: Grid) -> None:
 
 
 def rows_at(grid: Grid, patch: Patch, depth: int) -> Floats:
-    """Return `depth` rows of nodes, (depth, n, d) or (depth, n, m, 3), from a patch inwards."""
+    """Return `depth` rows of nodes, (depth, n, d) or (depth, n, m, 3), from a patch into its block."""
     counts = face_counts(grid.blocks[patch.block].counts, patch.side)
     return rows_beside(grid, patch.block, patch.side, patch.range(counts), depth)
 
 
 def rows_beside(grid: Grid, block: int, side: Side, span: Range, depth: int) -> Floats:
-    """Return `depth` rows of nodes, (depth, n, d) or (depth, n, m, 3), from `span` of a side inwards."""
+    """Return `depth` rows of nodes, (depth, n, d) or (depth, n, m, 3), from part `span` of a side inwards."""
     axis, end = PLACES[side]
     nodes = np.moveaxis(grid.blocks[block].nodes, axis, 0)
     return (nodes[::-1] if end else nodes)[(slice(depth), *(slice(first, last + 1) for first, last in span))]

@@ -38,10 +38,10 @@ _KINDS = {(2, 2), (2, 3), (3, 3)}  # number of index directions of a block, numb
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """The nodes of one block.
+    """The nodes of one block, in any unit of length.
 
-    `nodes` are (ni, nj, 2), (ni, nj, nk, 3), or (ni, nj, 3) on a surface, in any unit of length; they are
-    kept as float64 in planar layout (see `meshonet.geometry.arrays`). If `finite`, the check for infinities
+    `nodes` are (ni, nj, 2) in the plane, (ni, nj, 3) on a surface, or (ni, nj, nk, 3) in a volume. They are
+    kept as float64 in planar layout (see `meshonet.geometry.arrays`). With `finite`, the check for infinities
     and NaN is skipped.
 
     Raises InputError: nodes of another shape, fewer than 2 along a direction, or not finite.
@@ -85,14 +85,14 @@ def face_of(values: AnyArray, side: Side) -> AnyArray:
 
 
 def part_of(values: AnyArray, span: Range) -> AnyArray:
-    """Return a view of those `values` (n, ...) or (n, m, ...) of a side that are in the range `span`."""
+    """Return a view of the `values` (n, ...) or (n, m, ...) of a side that lie in the index range `span`."""
     for axis, (first, last) in enumerate(span):
         values = values[(slice(None),) * axis + (slice(first, last + 1),)]  # type: ignore[assignment]
     return values
 
 
 def face_counts(counts: tuple[int, ...], side: Side) -> tuple[int, ...]:
-    """Return the number of nodes along each direction of a side of a block with `counts` nodes."""
+    """Return the node counts along the directions of a side, from the `counts` along those of the block."""
     axis = PLACES[side][0]
     return counts[:axis] + counts[axis + 1 :]
 
@@ -114,7 +114,7 @@ def _check_finite(nodes: Floats) -> None:
 
 
 def form_of(nodes: Floats) -> Form:
-    """Return the form of a block, ``plane``, ``surface`` or ``volume``, from the shape of its nodes."""
+    """Return the form of a block from the shape of its nodes: ``plane``, ``surface`` or ``volume``."""
     if nodes.ndim == 4:
         return "volume"
     return "plane" if nodes.shape[-1] == 2 else "surface"

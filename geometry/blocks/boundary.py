@@ -57,7 +57,7 @@ class Boundary(Connected):
     name : str, optional
         Name of the shape in the input.
     wall : Curve, optional
-        The curve on which the nodes of `south` lie. Neural operators use it to know the shape between nodes.
+        The curve on which the nodes of `south` lie. From it, neural operators know the shape between nodes.
     chord : float, optional
         Unit of spacings: the chord of an airfoil, or the largest extent of another body. If 0, it is the
         distance from the first node of the body to the farthest other node.
@@ -131,9 +131,9 @@ class Boundary(Connected):
     def grid(
         self, nodes: Floats, provenance: Mapping[str, Any] | None = None, *, finite: bool = False
     ) -> Grid:
-        """Return the grid of `nodes` (ni, nj, 2), with the patches and connections of this boundary.
+        """Return the grid with `nodes` (ni, nj, 2), and with the patches and connections of this boundary.
 
-        With `finite` the nodes are known to be finite, and are not checked.
+        With `finite`, the nodes are known to be finite and are not checked.
         """
         block = Block(nodes, finite)
         return Grid((block,), self.patches, self.connections, self.name, provenance or {})

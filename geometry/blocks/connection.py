@@ -29,8 +29,9 @@ Face: TypeAlias = Callable[[int, Side], NDArray[Any]]
 
 @dataclass(frozen=True)
 class Connection:
-    """A part of one side of a block and a part of another side, the donor, whose nodes coincide.
+    """Two parts of block sides whose nodes coincide; one of them is called the side, the other the donor.
 
+    In a periodic connection, the nodes of the side coincide with the donor's after the motion `transform`.
     Index ranges ascend.
     """
 
@@ -47,13 +48,13 @@ class Connection:
 
     @property
     def ends(self) -> tuple[tuple[int, Side, Range], tuple[int, Side, Range]]:
-        """Block, side and index range of both sides."""
+        """Block, side and index range of the side, then the same of the donor."""
         return (self.block, self.side, self.range), (self.donor, self.donor_side, self.donor_range)
 
     def pairs(self, values: Sequence[NDArray[Any]]) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Return views, (n, 1) or (n, m, 1), of the `values` at nodes of the side and at nodes of the donor.
+        """Return views, (n, 1) or (n, m, 1), of `values` at the nodes of the side and at those of the donor.
 
-        `values` has one array per block. Both views have the order of the side.
+        `values` has one array per block. Both views are in the node order of the side.
         """
 
         def face(block: int, side: Side) -> NDArray[Any]:
@@ -62,9 +63,9 @@ class Connection:
         return replace(self, transform=None).nodes(face)
 
     def nodes(self, face: Face) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Return the nodes of the side and of the donor, both in the order of the side.
+        """Return the nodes of the side, moved by `transform`, and those of the donor, in the side's order.
 
-        Both arrays are (n, d) or (n, m, d); the nodes of the side are moved by `transform`.
+        Both are (n, d) or (n, m, d). `face` is a function of block and side, such as `Grid.face`.
         """
         own = part_of(face(self.block, self.side), self.range)
         donor = part_of(face(self.donor, self.donor_side), self.donor_range)
@@ -75,7 +76,7 @@ class Connection:
         return (self.transform(own) if self.transform else own), donor
 
     def check(self, face: Face) -> None:
-        """Raise InputError unless the nodes of both sides are bitwise equal."""
+        """Raise InputError unless the two arrays of `nodes` are bitwise equal."""
         own, donor = self.nodes(face)
         if own.shape != donor.shape:
             counts = f"{own.shape[:-1]} nodes to {donor.shape[:-1]}"
@@ -90,7 +91,7 @@ class Connection:
         )
 
     def reversed(self) -> Connection:
-        """Return the connection with side and donor exchanged; its transform is inverted, to rounding."""
+        """Return the connection with side and donor exchanged; its transform is inverted, up to rounding."""
         ways = [0] * len(self.orientation)
         for k, way in enumerate(self.orientation, start=1):
             ways[abs(way) - 1] = k if way > 0 else -k
@@ -102,14 +103,14 @@ class Connection:
         return f"the connection of {own} of block {self.block} to {donor} of block {self.donor}"
 
     def stretches(self, block: int) -> list[tuple[Side, int, int]]:
-        """Return the parts of a planar block's sides that are connected: side, first node and last node."""
+        """Return the connected parts of a planar block's sides: side, first node and last node of each."""
         return [(side, *nodes[0]) for number, side, nodes in self.ends if number == block]
 
 
 def cells_at(connection: Connection, face: Face) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return views (n, d) or (n, m, d) of the values of the cells next to the side and next to the donor.
+    """Return views, (n, d) or (n, m, d), of values in the cells next to the side and next to the donor.
 
-    Both views have the order of the side. `face` returns the values of the cells at a side of a block.
+    Both views are in the order of the side. `face` returns the values of the cells at a side of a block.
     """
     spans = [tuple((a, b - 1) for a, b in span) for span in (connection.range, connection.donor_range)]
     return replace(connection, range=spans[0], donor_range=spans[1], transform=None).nodes(face)
@@ -118,7 +119,7 @@ def cells_at(connection: Connection, face: Face) -> tuple[NDArray[Any], NDArray[
 def check_connections(connections: Sequence[Connection], counts: Sequence[tuple[int, ...]]) -> None:
     """Raise InputError if a connection names a block, side or node that does not exist.
 
-    `counts` are, for each block, the numbers of nodes along its directions.
+    `counts` are the node counts of each block along its directions.
     """
     for each in connections:
         for block, side, span in each.ends:
@@ -170,7 +171,7 @@ def wake_cells(connections: Sequence[Connection]) -> int:
 def wake_nodes(south: Floats) -> int:
     """Return how many nodes at the start of `south` (ni, 2) are repeated in reverse order at its end.
 
-    The result is 0 if all nodes are repeated.
+    If all nodes are repeated, there is no wake, and the result is 0.
     """
     half = south[: len(south) // 2]
     differs = (half != south[::-1][: len(half)]).any(axis=1)
@@ -178,10 +179,11 @@ def wake_nodes(south: Floats) -> int:
 
 
 def connections_of(topology: Topology, south: Floats, nj: int) -> tuple[Connection, ...]:
-    """Return the connections of a block of `topology` to itself: the seam of an O grid, the wake of a C grid.
+    """Return the connections of a block to itself: the seam of an O grid, or the wake of a C grid.
 
-    `south` (ni, 2) are the nodes of the south side; `nj` is the number of nodes along eta. Raises InputError:
-    an unknown topology; a C block without a wake.
+    `south` (ni, 2) are the nodes of the south side. `nj` is the number of nodes along eta.
+
+    Raises InputError: an unknown topology; a C block without a wake.
     """
     if topology == "quad":
         return ()
@@ -216,5 +218,5 @@ class Connected:
 
     @property
     def wake(self) -> int:
-        """Number of wake cells at each end of the south side, where (i, 0) and (ni-1-i, 0) coincide."""
+        """Number of wake cells at each end of the south side; nodes (i, 0) and (ni-1-i, 0) coincide there."""
         return wake_cells(self.connections)

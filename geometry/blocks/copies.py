@@ -29,13 +29,12 @@ MOST_COPIES = 10_000
 
 
 def copied(grid: Grid, copies: int | Sequence[int]) -> Grid:
-    """Return copies of a periodic grid, each joined to the next; all have patches of the same names.
+    """Return copies of a periodic grid, each joined to the next; all copies have the same patch names.
 
-    `grid` has one period, a rotation or a translation, or several translations. `copies` are the numbers of
-    copies along each period; rotated copies fill at most a whole turn.
+    The period of `grid` is a rotation, a translation, or several translations. `copies` gives the number of
+    copies along each period. Rotated copies fill at most a whole turn.
 
-    Raises InputError: the grid is not periodic; there are more or fewer numbers than periods; a number is out
-    of its range.
+    Raises InputError: a grid that is not periodic; not one number for each period; a number out of range.
     """
     counts = (copies,) if isinstance(copies, int) else tuple(copies)
     if counts == (1,):

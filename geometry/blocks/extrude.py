@@ -33,11 +33,11 @@ BACK, FRONT = "back", "front"
 
 
 def extruded(grid: Grid, heights: Sequence[float]) -> Grid:
-    """Return a planar `grid` as volumes, with its nodes repeated at each z of `heights`.
+    """Return the volumes of a planar `grid`, whose nodes are repeated at each z of `heights`.
 
-    `heights` are at least two and increase. Patches and connections extend over all heights. A body that
-    counts as a wall only because of its position gets the kind wall. The sides `bottom` of all blocks form
-    the symmetry plane ``back``, the sides `top` the symmetry plane ``front``; patches of `grid` with these
+    There are at least two heights, in increasing order. Patches and connections extend over all of them. A
+    body that counts as a wall only because of its position gets the kind wall. The sides `bottom` of all
+    blocks form the symmetry plane ``back``, the sides `top` form ``front``. Patches of `grid` with these
     names are renamed.
 
     Raises InputError: blocks that are not planar, fewer than two heights, heights that do not increase.
@@ -57,11 +57,12 @@ def extruded(grid: Grid, heights: Sequence[float]) -> Grid:
 def thickened(
     grid: Grid, nodes: Sequence[Floats], ends: tuple[End, End] | None, motion: Motion | None = None
 ) -> Grid:
-    """Return volumes with the patches and connections of a planar grid.
+    """Return a planar grid as volumes with the given `nodes`, and with its patches and connections.
 
-    `nodes` are the finite nodes (ni, nj, nk, 3) of each block; patches and connections extend over all planes
-    of nodes. `ends` are names and kinds of the patches at the first and at the last plane. If `ends` is None,
-    the two planes are connected by the periodic `motion`; if `motion` is None too, the planes coincide.
+    `nodes` has an array (ni, nj, nk, 3) of finite nodes for each block. Patches and connections extend over
+    all planes of nodes. `ends` has the name and kind of the patch on the first plane, then on the last. If it
+    is None, the two planes are connected, by the periodic `motion` or, if that is None too, because they
+    coincide.
 
     Raises InputError: blocks that are not planar; nodes that differ where blocks are connected.
     """
@@ -82,7 +83,7 @@ def thickened(
 
 
 def plane_of_extruded(grid: Grid) -> Grid | None:
-    """Return the planar grid from which `extruded` would make `grid`; None if there is no such grid."""
+    """Return the planar grid that `extruded` turns into `grid`; None if there is none."""
     if any(block.nodes.shape[3:] != (3,) for block in grid.blocks):
         return None
     z = grid.blocks[0].nodes[0, 0, :, 2]
@@ -131,7 +132,7 @@ def _renamed(patches: Sequence[Patch], ends: Sequence[str]) -> list[Patch]:
 
 
 def thick(each: Connection, planes: int) -> Connection:
-    """Return a connection of planar blocks as one of volumes, which extends over `planes` planes of nodes."""
+    """Return a connection of planar blocks as one of volumes; it extends over `planes` planes of nodes."""
     whole = (0, planes - 1)
     ranges = (*each.range, whole), (*each.donor_range, whole)
     motion = each.transform

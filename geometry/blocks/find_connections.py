@@ -34,12 +34,12 @@ def find_connections(
 ) -> tuple[Connection, ...]:
     """Return the connections of right-handed `blocks`, sorted by block and side.
 
-    Nodes count as equal if they are at most `tolerance` edge lengths or one unit of the last digit of the
-    coordinates (`rounding`) apart, whichever is larger. `with_equal_nodes` can then make them bitwise equal.
-    `without` lists parts of sides that must not be connected. If more than two sides coincide, two sides of
-    one block are joined first, then the sides of successive blocks.
+    Two nodes count as equal if their distance is at most `tolerance` edge lengths, or one unit of the last
+    digit of the coordinates (see `rounding`) if that is larger. `with_equal_nodes` can make them bitwise
+    equal. `without` lists parts of sides that must not be connected. If more than two sides coincide, two
+    sides of one block are joined first, then the sides of successive blocks.
 
-    Raises InputError: planar blocks mixed with blocks in space.
+    Raises InputError: some blocks have two coordinates, others three.
     """
     parts = [each if len(each) == 3 else (*each[:2], (each[2:],)) for each in without]
     planar = [block.nodes.shape[-1] == 2 for block in blocks]

@@ -47,9 +47,9 @@ _MOST_SHOWN = 6
 
 @dataclass(frozen=True)
 class Origin:
-    """Origin of a sample of a dataset.
+    """Where a sample of a dataset comes from.
 
-    `parameters` are those of the shape; `split` is ``train``, ``test`` or empty; `title` is the name of the
+    `parameters` are those of the shape. `split` is ``train``, ``test`` or empty. `title` is the name of the
     shape inside its file, if the sample is named after the file.
     """
 

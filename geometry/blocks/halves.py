@@ -23,10 +23,10 @@ _OTHER: dict[Side, Side] = {"west": "east", "east": "west"}
 
 
 def with_image(half: Grid) -> Grid:
-    """Return a grid in space and its mirror image in z = 0, joined at its patches of kind symmetry.
+    """Return a three-dimensional grid and its mirror image in z = 0, joined at its patches of kind symmetry.
 
-    The nodes of these patches lie in z = 0 exactly. The blocks of the image follow the blocks of the half, in
-    the same order; their names get the ending ``-image``. The half must not be periodic.
+    The nodes of these patches lie in z = 0 exactly. The blocks of the image follow those of `half` in the
+    same order; the names of blocks get the ending ``-image``. The grid must not be periodic.
     """
     step, image = len(half.blocks), with_i_reversed(half)
     blocks = (*half.blocks, *map(_mirrored, image.blocks))

@@ -27,7 +27,7 @@ def signed_volume(coordinates: Sequence[Floats]) -> float:
 
 
 def flux_through(face: Floats) -> float:
-    """Return ∮ r·n dA over a face (3, n, m) of nodes."""
+    """Return the integral ∮ r·n dA over a face with nodes (3, n, m)."""
     a, b, c, d = face[:, :-1, :-1], face[:, 1:, :-1], face[:, 1:, 1:], face[:, :-1, 1:]
     (x, y, z), (u, v, w) = c - a, d - b
     area = 0.5 * np.stack([y * w - z * v, z * u - x * w, x * v - y * u])

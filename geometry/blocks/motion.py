@@ -35,14 +35,14 @@ class Motion:
 
     @property
     def translation(self) -> Floats:
-        """The shift (2 or 3,), zero where there is none."""
+        """The `shift` (2,) or (3,); zeros if there is none."""
         return np.array(self.shift or (0.0,) * (len(self.turn) or 2))
 
     @property
     def rotation(self) -> tuple[float, Floats]:
-        """Angle (radians, counter-clockwise) and centre (2,) of a motion in the plane, as a rotation.
+        """Angle (radians, counter-clockwise) and centre (2,) of a rotation that equals a motion in the plane.
 
-        Without a rotation the angle is 0 and the centre the origin; the motion is then only `shift`.
+        A pure translation has the angle 0 and the origin as its centre.
         """
         if not self.turn:
             return 0.0, np.zeros(2)

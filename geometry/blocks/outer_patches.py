@@ -28,8 +28,8 @@ def owners_of(
 ) -> NDArray[np.intp]:
     """Return, for each cell (n,) or (n, m) at a side, the index of the last of `patches` that contains it.
 
-    `inside` lists the connected parts of the sides, each as its side and its index range. Cells in these
-    parts get `JOINED`; other cells without a patch get `UNNAMED`.
+    `inside` lists the connected parts of the sides: the side and index range of each. Cells in these parts
+    get `JOINED`. Other cells without a patch get `UNNAMED`. `counts` are the block's node counts.
     """
     nodes = face_counts(counts, side)
     owners = np.full([n - 1 for n in nodes], UNNAMED, dtype=np.intp)
@@ -48,7 +48,7 @@ def outer_patches(
     """Return patches that cover each cell of the outer boundary of block number `block` exactly once.
 
     Where `patches` overlap, the later one counts. Cells without a patch get one named after their side.
-    `counts` are the numbers of nodes along each direction; `inside` is as in `owners_of`.
+    `counts` and `inside` are as in `owners_of`.
     """
     own = [patch for patch in patches if patch.block == block]
     inside = list(inside)
@@ -61,7 +61,7 @@ def outer_patches(
 
 
 def rectangles(owners: NDArray[np.intp]) -> Iterator[tuple[int, Range]]:
-    """Yield rectangles of cells that have one owner (patch), as owner and node range.
+    """Yield rectangles of cells with the same owner (index of a patch), as owner and index range of nodes.
 
     They cover all cells that are not `JOINED`. `owners` (n,) or (n, m) is the result of `owners_of`.
     """

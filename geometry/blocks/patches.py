@@ -50,11 +50,11 @@ def may_be_wall(name: str, kind: Kind = "other") -> bool:
 
 @dataclass(frozen=True)
 class Patch:
-    """Nodes ``start`` to ``stop``, both included, of one side of a block, with a name.
+    """A named part of a side of a block: nodes `start` to `stop`, both included.
 
     Nodes are counted along i on south and north, along j on west and east. On a side of a volume, they are
-    counted along its first direction, and `across` are the first and last node along the second, or None for
-    all. The default kind of boundary is derived from the name.
+    counted along its first direction; `across` is the first and last node along its second, or None for all.
+    The default kind of boundary is derived from the name.
     """
 
     name: str
@@ -71,7 +71,7 @@ class Patch:
 
     @property
     def place(self) -> tuple[int, int]:
-        """The index direction normal to the side, and its end (`meshonet.geometry.blocks.block.PLACES`)."""
+        """Index direction normal to the side, and the end of the block there (see `blocks.block.PLACES`)."""
         return PLACES[self.side]
 
     @property
@@ -80,7 +80,7 @@ class Patch:
         return may_be_wall(self.name, self.kind)
 
     def range(self, counts: tuple[int, ...]) -> Range:
-        """Return the range of nodes along each direction of the side, in a block with `counts` nodes."""
+        """Return the index range of the nodes along each direction of a side that has `counts` nodes."""
         along: Range = ((self.start, self.stop),)
         return along if len(counts) == 1 else (*along, self.across or (0, counts[1] - 1))
 

@@ -52,10 +52,11 @@ def resample_edge(nodes: Floats, m: int, *, closed: bool) -> Floats:
 def resample_edges(
     edges: Mapping[Side, Floats], ni: int, nj: int, *, closed: bool, wake: int
 ) -> dict[Side, Floats]:
-    """Return the four `edges` of a block resampled to ni nodes along xi and nj along eta.
+    """Return the four `edges` of a block, resampled to `ni` nodes along xi and `nj` along eta.
 
-    The first and the last `wake` cells of the south edge are the wake. The nodes of these two parts stay
-    equal, and their fraction of the edge's cells stays the same.
+    The wake is the first and the last `wake` cells of the south edge. The nodes of these two parts stay
+    equal, and their fraction of the edge's cells stays the same. `closed` says whether south and north are
+    closed.
 
     Raises InputError: too few nodes for a closed edge, or for the wall between the two sides of a wake.
     """
@@ -104,9 +105,9 @@ def resample_patches(
 
 
 def patches_in_place(had: Boundary, has: Boundary) -> tuple[Patch, ...]:
-    """Return the patches of `had`, transferred to `has`, a boundary with the same edges but other nodes.
+    """Return the patches of `had` for `has`, a boundary with the same edges but other nodes.
 
-    Each end of a patch moves to the node with the nearest fraction of the side's length.
+    Each end of a patch moves to the node at the nearest fraction of the side's length.
     """
 
     def moved(patch: Patch) -> Patch:

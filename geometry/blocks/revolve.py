@@ -109,7 +109,7 @@ class Revolution:
 
 
 def revolution(degrees: float | None, planes: int | None, axis: AxisLine | None) -> Revolution | None:
-    """Return the revolution with these settings; None without an angle.
+    """Return the revolution with these settings, or None if `degrees` is None.
 
     Raises InputError: an axis without an angle; the errors of `Revolution`.
     """
@@ -121,10 +121,9 @@ def revolution(degrees: float | None, planes: int | None, axis: AxisLine | None)
 
 
 class AxisFrame(NamedTuple):
-    """Coordinates about an axis in the plane of a grid.
+    """Coordinates about an axis in the plane of a grid, with three attributes (2,).
 
-    `point` is on the axis, `along` is its direction, `away` the direction from the axis to the grid, (2,)
-    each.
+    `point` is on the axis, `along` is its direction, `away` is the direction from the axis to the grid.
     """
 
     point: Floats
@@ -181,8 +180,9 @@ def frame_of(points: Floats, axis: AxisLine) -> AxisFrame:
 def revolved(grid: Grid, turn: Revolution, ends: tuple[End, End] | None = None) -> Grid:
     """Return a planar grid revolved about the axis of `turn`.
 
-    The first and last plane of a wedge are the patches ``wedge1`` and ``wedge2``; those of a sector are
-    periodic, or patches with the names and kinds `ends`; those of a full revolution are connected.
+    The first and last plane of a wedge become the patches ``wedge1`` and ``wedge2``. Those of a larger angle
+    become patches with the names and kinds `ends`, or are periodic without `ends`. Those of a full revolution
+    coincide and are connected.
 
     Raises InputError: blocks that are not planar; periodic connections; nodes on both sides of the axis, or
     all on the axis.
@@ -224,7 +224,7 @@ def _with_axis(grid: Grid, frame: AxisFrame) -> Grid:
 def bent(nodes: Sequence[Floats], turn: Revolution) -> list[Floats]:
     """Return volumes (ni, nj, nk, 3) bent about the axis of `turn`: z becomes an angle, 0 to `turn.degrees`.
 
-    Raises InputError: nodes on both sides of the axis.
+    The lowest z of all `nodes` gets the angle 0. Raises InputError: nodes on both sides of the axis.
     """
     flat = np.concatenate([each[..., :2].reshape(-1, 2) for each in nodes])
     frame = frame_of(flat, turn.axis)

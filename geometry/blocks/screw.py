@@ -36,7 +36,7 @@ SAME_PERIOD = 1e-9
 
 
 def period_of(motion: Motion) -> tuple[Screw, float]:
-    """Return a motion as a screw, and how many such motions make a turn, rounded; 0 for a translation."""
+    """Return a motion as a screw, and how many such motions make a whole turn (0 for a translation)."""
     screw = screw_of(motion)
     if not screw.angle:
         return screw, 0.0
@@ -47,7 +47,10 @@ def period_of(motion: Motion) -> tuple[Screw, float]:
 
 
 def by_period(connections: Sequence[Connection]) -> list[tuple[Motion, list[Connection]]]:
-    """Return the different motions of periodic connections, each with its connections (some reversed)."""
+    """Return the different motions of periodic connections, each with its connections.
+
+    A connection with the inverse motion is reversed.
+    """
     periods: list[tuple[Motion, list[Connection]]] = []
     for each in connections:
         if each.transform is None:

@@ -26,11 +26,11 @@ def shared_nodes(
     counts: Sequence[tuple[int, ...]], connections: Sequence[Connection], *, periodic: bool = False,
     order: Literal["C", "F"] = "C",
 ) -> tuple[Indices, ...]:  # fmt: skip
-    """Return the global numbers, from 0, of the nodes of blocks; `counts` are their nodes per direction.
+    """Return arrays of the global numbers, from 0, of the nodes of blocks with `counts` nodes per direction.
 
-    Nodes that connections join, directly or through other nodes, have the same number. Numbers ascend in the
-    order in which nodes first appear: block after block, within a block with the last index fastest (in
-    `order` F the first). The two sides of a periodic connection have separate numbers unless `periodic`.
+    Nodes that connections join, directly or through other nodes, have the same number. Numbers ascend block
+    after block, within a block with the last index fastest (for `order` F with the first). Unless `periodic`,
+    the two sides of a periodic connection have separate numbers.
     """
     ends, numbers = numbered(counts, order)
     joined = [each.pairs(numbers) for each in connections if periodic or each.transform is None]
@@ -43,9 +43,9 @@ def shared_nodes(
 def numbered(
     counts: Sequence[tuple[int, ...]], order: Literal["C", "F"] = "C"
 ) -> tuple[Indices, list[Indices]]:
-    """Return the number of each block's first node, then the total; also each block's node numbers.
+    """Return the number of each block's first node and then the total; also each block's node numbers.
 
-    Nodes are numbered block after block; joined nodes have separate numbers.
+    Nodes are numbered block after block. Joined nodes have separate numbers.
     """
     ends = np.cumsum([0, *(int(np.prod(count)) for count in counts)])
     parts = zip(ends, ends[1:], counts, strict=False)
@@ -55,7 +55,7 @@ def numbered(
 def node_table(
     blocks: Sequence[Block], connections: Sequence[Connection]
 ) -> tuple[Floats, tuple[Indices, ...]]:
-    """Return all nodes (n, d), joined nodes only once, and for each block the indices of its nodes."""
+    """Return the nodes (n, d) of all blocks, joined nodes once; also, per block, the indices of its nodes."""
     numbers = shared_nodes([block.counts for block in blocks], connections)
     if len(blocks) == 1 and not connections:
         return np.ascontiguousarray(blocks[0].nodes.reshape(-1, blocks[0].nodes.shape[-1])), numbers

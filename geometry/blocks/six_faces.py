@@ -103,9 +103,9 @@ class SixFaces:
         return math.hypot(*(high - low))
 
     def edges_along(self, axis: int) -> list[Floats]:
-        """Return the four edges (n, 3) of the volume along the direction `axis`.
+        """Return the four edges (n, 3) of the volume along the direction number `axis`.
 
-        The edges are at the (low, low), (high, low), (low, high), (high, high) ends of the other directions.
+        In the two other directions, they are at (low, low), (high, low), (low, high) and (high, high).
         """
         first, second = (
             [side for side in FACES if PLACES[side][0] == each] for each in range(3) if each != axis
@@ -135,7 +135,7 @@ class SixFaces:
     def at(self, knots: list[Floats], places: list[Floats]) -> "SixFaces":
         """Return the faces interpolated from the parameters `knots` of nodes to new parameters `places`.
 
-        Both are given for each direction and increase from 0 to 1. Nodes of an edge stay on that edge.
+        Both lists have an array for each direction, which increases from 0 to 1. Nodes of an edge stay on it.
         """
         made: dict[Side, Floats] = {}
         for side in FACES:

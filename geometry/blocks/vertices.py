@@ -42,7 +42,7 @@ class Vertices:
 
     @cached_property
     def irregular(self) -> Indices:
-        """Indices of the inner nodes at which other than four cells meet."""
+        """Indices of the inner nodes at which fewer or more than four cells meet."""
         return np.flatnonzero((self.valence != 4) & ~self.outer)
 
     def place(self, node: int) -> tuple[int, int, int]:

@@ -14,8 +14,9 @@ from meshonet.geometry.blocks.patches import Patch
 def wall_surface(grid: Grid) -> Grid:
     """Return a grid of the patches of a volume that are walls, with normals that point into the volume.
 
-    Blocks of the volume must be right-handed. Edges of the surface that are in the plane of symmetry (z = 0
-    or y = 0) and not joined to other edges become the patch ``symmetry``. Zones get the names of the walls.
+    Blocks of the volume must be right-handed. Edges of the surface that lie in the plane of symmetry (z = 0
+    or y = 0) and are not joined to other edges become the patch ``symmetry``. Blocks are named after the
+    walls.
     """
     walls = [patch for patch in grid.patches if patch.kind == "wall"]
     blocks = [_outwards(grid, patch) for patch in walls]

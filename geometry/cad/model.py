@@ -29,7 +29,7 @@ class CadEdge:
 
 @dataclass(frozen=True, eq=False)
 class EdgeUse:
-    """An edge in the loop of a face."""
+    """An edge as a part of the loop (closed chain of edges) around a face."""
 
     edge: int  # index of the edge
     forward: bool  # whether the loop follows the edge's direction
@@ -38,7 +38,7 @@ class EdgeUse:
 
 @dataclass(frozen=True, eq=False)
 class CadFace:
-    """A face with the loop around it."""
+    """A face with the loop of edges around it."""
 
     uses: tuple[EdgeUse, ...]  # edges of the outer loop, counter-clockwise in the coordinates on the face
     points: Callable[[Floats], Floats]  # function from these coordinates (n, 2) to points (n, 3)
@@ -48,7 +48,7 @@ class CadFace:
 
 @dataclass(frozen=True, eq=False)
 class CadModel:
-    """All faces of a CAD file; a `meshonet.geometry.shapes.shape.Shape` without four edges."""
+    """All faces of a CAD file; a `Shape` that cannot be made a boundary of four sides."""
 
     vertices: Floats  # (n, 3) positions in the unit of the file
     # edges, faces: in the order of the file
@@ -59,7 +59,7 @@ class CadModel:
 
     @property
     def size(self) -> float:
-        """Longest extent of the edges along an axis."""
+        """Greatest extent of the edges along any axis."""
         part = np.linspace(0.0, 1.0, 33)
         curves = [edge.points(part) for edge in self.edges if edge.points is not None]
         return extent_of(np.concatenate([self.vertices, *curves]))

@@ -42,18 +42,18 @@ class Corner:
     k: Any
 
     def restore(self, v: Any) -> Any:
-        """Return v for v', an array or a torch tensor."""
+        """Return the points v for points `v` after the map (v' above), an array or a torch tensor."""
         r = ((v - self.P) / (v - self.Q)) ** self.k
         return (self.q * r - self.p) / (r - 1.0)
 
 
 @dataclass(frozen=True)
 class Lift:
-    """The conformal map between the plane z around a body and a strip w = psi + i phi (`lift_body`).
+    """The conformal map between the plane z around a body and a strip w = psi + i phi (see `lift_body`).
 
-    `centre` and `quarter` describe position, rotation and size of the body. `pole` is the centroid of the
-    wall after Joukowski's map and the `corners`. `phase` puts the first wall node at phi = 0. Attributes are
-    numbers or torch tensors.
+    `centre` and `quarter` describe position, rotation and size of the body. `corners` are the maps that
+    straighten its corners. `pole` is the centroid of the wall after Joukowski's map and these maps. `phase`
+    puts the first wall node at phi = 0. Attributes are numbers or torch tensors.
     """
 
     centre: Any
@@ -70,7 +70,7 @@ class Lift:
         return self.centre + self.quarter * (zeta + 1.0 / zeta)
 
     def to_strip(self, z: Complexes) -> Complexes:
-        """Return strip points w (n,), with continuous phi, of points z (n,) in order around the body."""
+        """Return the points w (n,), with continuous phi, of points `z` (n,) in order around the body."""
         return _native.lift_to_strip(self, np.ascontiguousarray(z, complex))
 
 
@@ -81,13 +81,11 @@ def mirrored(nodes: Floats) -> Complexes:
 
 
 def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, tuple[int, ...]]:
-    """Return the conformal map of a body, and where it takes the wall.
+    """Return the conformal map of a body, the points (n,) of its wall in the strip, and its corners' indices.
 
-    `wall` (n,) runs counter-clockwise from the trailing edge, without its repeated first node. Each corner of
-    a blunt edge is straightened by a map (`Corner`). The order of the two maps changes the result. With
-    `swap` the second corner comes first, so that a mirrored body has the mirrored result.
-
-    Returns the map, the points (n,) of the wall in the strip, and the indices of its trailing corners.
+    `wall` (n,) runs counter-clockwise from the trailing edge, without its repeated first node. A map
+    (`Corner`) straightens each corner of a blunt trailing edge. The order of two such maps changes the
+    result. With `swap` the second corner comes first, so that a mirrored body has the mirrored result.
 
     Raises InputError: fewer than 8 nodes, or a wall that does not wind once around its middle.
     """
@@ -102,7 +100,7 @@ def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, 
 
 
 def follow(wall: Complexes, centre: complex, quarter: complex) -> Complexes:
-    """Return zeta (n,), continuous along a `wall` (n,), with z = centre + quarter (zeta + 1/zeta)."""
+    """Return zeta (n,), continuous along a `wall` (n,), where wall = centre + quarter (zeta + 1/zeta)."""
     return _native.lift_follow(np.ascontiguousarray(wall, complex), centre, quarter)
 
 

@@ -33,17 +33,17 @@ DENSE = 640  # points that represent the whole wall
 def conformal_knots(
     curve: Curve, marks: Floats, count: int, at: NDArray[np.intp] | None = None, steps: tuple[int, ...] = (1,)
 ) -> Floats:
-    """Return arc lengths (count,) on a closed curve at equal steps of the conformal angle.
+    """Return arc lengths (count,) on a closed curve at equal steps of the angle of its conformal map.
 
     The curve is clockwise from its first node, which is repeated.
 
     Parameters
     ----------
     marks : (m,) ascending arc lengths in (0, length) at which there must be nodes.
-    at : (m,) indices of these nodes; None: multiples of one of the `steps`.
-    steps : the first one that does not exceed the index of the first mark is used.
+    at : (m,) indices of the nodes at `marks`; if None, they are multiples of one of the `steps`.
+    steps : the first that does not exceed the index of the node at the first mark is used.
 
-    Raises InputError: the wall in the strip is not a function of phi, or the iteration does not converge.
+    Raises InputError: the conformal angle does not increase along the curve; no convergence.
     """
     back = None if at is None else count - 1 - at[::-1]
     clockwise = _one_way(curve, marks, count, at, steps, mirror=False)

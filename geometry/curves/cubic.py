@@ -10,8 +10,8 @@ from meshonet.kernels._native import cubic_values, sampled_lines, solve_tridiago
 class CubicTable:
     """The cubic spline through `values` (n, ...) at ascending `knots` (n,), with not-a-knot ends.
 
-    2 knots give a line, 3 a parabola. Values at knots are bitwise kept; outer cubics continue beyond the
-    ends. de Boor, A Practical Guide to Splines (1978), chapter IV.
+    Through 2 knots it is a line, through 3 a parabola. At knots it has bitwise the given values. Beyond the
+    ends, the outer cubics continue. de Boor, A Practical Guide to Splines (1978), chapter IV.
     """
 
     def __init__(self, values: Floats, knots: Floats) -> None:
@@ -37,14 +37,14 @@ class CubicTable:
         )
 
     def integrals(self) -> Floats:
-        """Return the integrals (n, ...) from the first knot to each knot."""
+        """Return the integrals (n, ...) of the spline from the first knot to each knot."""
         h = np.diff(self.knots).reshape(-1, *(1,) * (self.values.ndim - 1))
         mean, bend = self.values[:-1] + self.values[1:], self.bends[:-1] + self.bends[1:]
         pieces = h * (0.5 * mean - h * h * bend / 24.0)
         return np.concatenate([np.zeros_like(self.values[:1]), np.cumsum(pieces, axis=0)])
 
     def unit_cubics(self) -> Floats:
-        """Return coefficients (4, n - 1, ...), constant first, of each piece as a cubic in t (0 to 1)."""
+        """Return coefficients (4, n - 1, ...), constant first, of each piece as a cubic in t from 0 to 1."""
         h = np.diff(self.knots).reshape(-1, *(1,) * (self.values.ndim - 1))
         begin, end = self.bends[:-1] * h**2, self.bends[1:] * h**2
         rise = np.diff(self.values, axis=0)
@@ -53,7 +53,7 @@ class CubicTable:
 
 
 def cubic_spline(values: Floats, knots: Floats, places: Floats) -> Floats:
-    """Return values (p, ...), at `places` (p,), of the `CubicTable` of `values` (n, ...) at `knots` (n,).
+    """Return the `CubicTable` through `values` (n, ...) at `knots` (n,), evaluated at `places` (p,).
 
     >>> knots = np.array([0.0, 1.0, 3.0, 4.0, 6.0])
     >>> float(cubic_spline(knots**3, knots, np.array([2.0]))[0])
@@ -91,8 +91,8 @@ def _bends(values: Floats, knots: Floats) -> Floats:
 class LimitedSpline:
     """The cubic spline through `values` (n, ...) at ascending `knots` (n,), limited to be monotone.
 
-    Slopes of `CubicTable` are limited to three times those of the chords on both sides, and 0 at extrema.
-    Hyman, SIAM J. Sci. Stat. Comput. 4 (1983) 645-654.
+    At extrema its slope is 0. Elsewhere it is that of `CubicTable`, but at most three times the slope of the
+    chord on either side. Hyman, SIAM J. Sci. Stat. Comput. 4 (1983) 645-654.
     """
 
     def __init__(self, values: Floats, knots: Floats) -> None:
@@ -113,10 +113,10 @@ class LimitedSpline:
 
 
 def sampled(lines: Floats, arc: Floats, at: Floats) -> Floats:
-    """Return points (k, n, ...) on k cubic `lines` (k, m, ...) at arc lengths `at` (k, n), clipped.
+    """Return points (k, n, ...) at arc lengths `at` (k, n) on k piecewise cubic `lines` (k, m, ...).
 
-    `arc` (k, m) are the arc lengths of the m nodes. The tangent at a node is that of a parabola through three
-    nodes.
+    `arc` (k, m) are the arc lengths of the m nodes; `at` is clipped to them. The tangent at a node is that of
+    a parabola through three nodes.
     """
     points = np.empty((*at.shape, lines.shape[2]))
     lines, arc, at = (np.ascontiguousarray(each) for each in (lines, arc, np.minimum(at, arc[:, -1:])))

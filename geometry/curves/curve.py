@@ -22,13 +22,13 @@ _EDGES = np.arange(_STEPS + 1) / _STEPS  # ends of the parts
 
 
 class Curve:
-    """A smooth curve through given points (bitwise), one cubic per interval (`geometry.curves.spline`).
+    """A smooth curve with one cubic in each interval (`geometry.curves.spline`), bitwise through its points.
 
-    `points` (n, 2) are at least 2, of a closed curve 3, in any unit; a closed curve may repeat its first. The
-    tangent may jump at `corners`, indices of points; None: they are detected (`geometry.polygon.corners`).
-    Intervals in the mask `straight` (intervals,) are straight lines. So are long ones between rounded
-    corners, whose curves are tangent to them (`geometry.polygon.straights`). Raises InputError: too few
-    points; a point not finite or equal to its neighbour; a corner out of range.
+    `points` (n, 2) are at least 2, or 3 for a closed curve, which may repeat its first. The tangent may jump
+    at `corners` (indices of points); None: they are detected (`geometry.polygon.corners`). Intervals in the
+    mask `straight` (intervals,) are straight lines. So are long ones between rounded corners, whose curves
+    are tangent to them (`geometry.polygon.straights`). Raises InputError: too few points; a point that is not
+    finite or equals its neighbour; a corner out of range.
 
     >>> square = Curve(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), closed=True)
     >>> square.length, square.corners.tolist()
@@ -107,7 +107,7 @@ class Curve:
 
     @property
     def tables(self) -> tuple[Floats, Floats, Floats, Floats, int]:
-        """Tables for compiled code: cubics (4, n, 2), arc lengths, slopes of the inverse, parts of cubics."""
+        """Tables of the curve for compiled code."""
         return self._cubic, self._table, self._rate_start, self._rate_stop, _STEPS
 
     def _locate(self, s: Floats) -> tuple[Indices, Floats]:
@@ -118,7 +118,7 @@ class Curve:
         return i, t
 
     def at(self, s: Floats) -> Floats:
-        """Return points (m, 2) at arc lengths `s` (m,), clipped if open; at `knots`, bitwise as given."""
+        """Return points (m, 2) at arc lengths `s` (m,), clipped if open; at `knots` bitwise as given."""
         i, t = self._locate(s)
         points = np.empty((len(t), 2))
         curve_points(self._cubic, i, t, self.points[0 if self.closed else -1], points)
@@ -132,9 +132,9 @@ class Curve:
         return np.asarray(d / np.hypot(d[:, 0], d[:, 1])[:, None])
 
     def polyline(self, places: Floats) -> Floats:
-        """Return points at the parameters `places` (k,), in [0, 1), of every interval.
+        """Return, for every interval, the points at the parameters `places` (k,) in [0, 1).
 
-        The result is (intervals * k, 2); an open curve has one more row, the end point.
+        The result is (intervals * k, 2). An open curve has one more row, its end point.
         """
         i = np.arange(self._cubic.shape[1])[:, None]
         t = places[None, :, None]
@@ -151,7 +151,7 @@ class Curve:
 
 
 def wall_line(nodes: Floats) -> Curve:
-    """Return the open curve through `nodes` (n, 2) of a wall, with corners at slight kinks too (`Curve`)."""
+    """Return the open curve through `nodes` (n, 2) of a wall; slight kinks count as corners too."""
     from meshonet.geometry.polygon.straights import find_kinks  # which most curves do not need
 
     return Curve(nodes, corners=np.concatenate([find_corners(nodes), find_kinks(nodes, few=0)]))

@@ -18,11 +18,11 @@ STEPS = 4  # default number of integration steps between neighbouring arc length
 def frames_along(
     path: Path, s: Floats, up: Floats | None = None, *, steps: int = STEPS
 ) -> tuple[Floats, Floats]:
-    """Return x and y axes (n, 3) of cross-sections of a path, at increasing arc lengths `s` (n,) from 0.
+    """Return x and y axes (n, 3) of cross-sections of a path at arc lengths `s` (n,), which increase from 0.
 
-    x, y and the tangent are right-handed. y starts nearest to `up`, by default z, or y where the path is
-    along z. On a closed path frames turn about the tangent at a constant rate, so that the last is the first.
-    Raises InputError: `up` is parallel to the path.
+    x, y and the tangent are right-handed. At the start, y is as close as possible to `up`. By default that is
+    z, or y if the path starts along z. On a closed path, frames are turned about the tangent at a constant
+    rate, so that the last equals the first. Raises InputError: `up` is parallel to the path's start.
     """
     fine = (s[:-1, None] + (np.arange(steps) / steps) * np.diff(s)[:, None]).ravel()
     fine = np.append(fine, s[-1])

@@ -6,9 +6,9 @@ from meshonet.geometry.arrays import Floats, Indices
 
 
 def inner_slopes(h: Floats, delta: Floats) -> Floats:
-    """Return slopes (n-1, ...) at inner points of n intervals of lengths `h` and slopes `delta`.
+    """Return slopes (n-1, ...) at the points between n intervals with lengths `h` and chord slopes `delta`.
 
-    They are weighted harmonic means, and 0 where `delta` changes its sign: cubics do not overshoot.
+    They are weighted harmonic means of both `delta`. Where `delta` changes its sign they are 0.
     """
     w1, w2 = 2 * h[1:] + h[:-1], h[1:] + 2 * h[:-1]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -19,8 +19,8 @@ def inner_slopes(h: Floats, delta: Floats) -> Floats:
 def monotone_cubic(x: Floats, values: Floats, at: Floats, *, linear: bool = False) -> Floats:
     """Return values (m, ...) at `at` (m,) of the curve through `values` (n, ...) at ascending `x` (n,).
 
-    It is piecewise cubic, monotone in each interval and flat at extrema, or `linear`; end slopes are those of
-    parabolas.
+    It is piecewise cubic, monotone in each interval and flat at extrema, with end slopes of parabolas. With
+    `linear` it is piecewise linear.
     """
     i, t, _ = piece_at(x, at, values.ndim)
     low, high = values[i], values[i + 1]
@@ -33,9 +33,9 @@ def monotone_cubic(x: Floats, values: Floats, at: Floats, *, linear: bool = Fals
 
 
 def piece_at(x: Floats, at: Floats, dimension: int) -> tuple[Indices, Floats, Floats]:
-    """Return, for each of `at` (m,), its interval of `x` (n,), the fraction of the interval, and its length.
+    """Return, for each of `at` (m,): index of its interval of `x` (n,), fraction in it, length of it.
 
-    The last two have the shape (m, 1, ...), with as many axes as `dimension` says.
+    Fraction and length have the shape (m, 1, ...), with `dimension` axes.
     """
     i = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(x) - 2)
     h, shape = x[i + 1] - x[i], (*at.shape, *(1,) * (dimension - 1))

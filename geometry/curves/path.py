@@ -30,7 +30,7 @@ class Path(Protocol):
     closed: bool
 
     def at(self, s: Floats) -> PathPoints:
-        """Return points, tangents and curvature at arc lengths `s` (n,), 0 to the length."""
+        """Return points, tangents and curvature at arc lengths `s` (n,), between 0 and the path's length."""
         ...
 
 
@@ -74,7 +74,7 @@ class SplinePath:
         self.length = float(self._table[-1])
 
     def at(self, s: Floats) -> PathPoints:
-        """Return points, tangents and curvature at arc lengths `s` (n,), 0 to the length."""
+        """Return points, tangents and curvature at arc lengths `s` (n,), between 0 and the path's length."""
         i, t = self._locate(np.clip(np.asarray(s, dtype=np.float64), 0.0, self.length))
         a, b, c, d = self._cubic[:, i]
         u = t[:, None]
@@ -125,10 +125,10 @@ class Bend:
 
 
 class PiecedPath:
-    """Lines and arcs joined without kinks, from `start` (3,) in a `direction` (3,).
+    """A path of `pieces` joined without kinks, from the point `start` (3,) in a `direction` (3,).
 
-    `towards` of an arc is made perpendicular to the path at its beginning. Raises InputError: no piece; a
-    length or radius that is not positive; a `towards` parallel to the path.
+    The direction `towards` of an arc is made perpendicular to the path where the arc begins. Raises
+    InputError: no piece; a length or radius that is not positive; a `towards` parallel to the path.
     """
 
     def __init__(self, pieces: tuple[Bend, ...], start: Floats, direction: Floats) -> None:

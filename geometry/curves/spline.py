@@ -20,11 +20,11 @@ LONGEST = 2.0  # largest size of a slope: a longer one makes a loop or a cusp
 def spline_slopes(
     points: Floats, *, closed: bool, corners: Indices, tangent: Bools | None = None
 ) -> tuple[Floats, Floats]:
-    """Return the slopes (intervals, 2) at the start and at the end of each interval.
+    """Return the slopes (intervals, 2) of a curve at the start and at the end of each interval.
 
-    Between `corners` (indices) the curve is a cubic spline, parabolic beside a corner, without overshoots
-    (`limited`). A closed curve does not repeat its first point. Its intervals in the mask `tangent` (n,) are
-    straight lines, to which the splines beside them are tangent.
+    Between `corners` (indices of points) the curve is a cubic spline, which is limited to avoid overshoots
+    (see `limited`). Beside a corner it is a parabola. A closed curve does not repeat its first point. Its
+    intervals in the mask `tangent` (n,) are straight lines, to which the splines beside them are tangent.
     """
     if tangent is not None and tangent.any():
         return _beside_lines(points, corners, tangent)
@@ -65,16 +65,20 @@ def _beside_lines(points: Floats, corners: Indices, tangent: Bools) -> tuple[Flo
 
 
 def cubics(start: Floats, chord: Floats, first: Floats, last: Floats) -> Floats:
-    """Return the coefficients (4, n, d) of cubics in t (0 to 1) with end slopes `first` and `last`."""
+    """Return the coefficients (4, n, d) of n cubics in t from 0 to 1, constant first.
+
+    `start` (n, d) are their first points and `chord` (n, d) the vectors from there to their last points.
+    `first` and `last` (n, d) are the slopes at both ends.
+    """
     return np.stack([start, first, 3 * chord - 2 * first - last, first + last - 2 * chord])
 
 
 def checked_points(points: Floats, what: str, point: str, dimension: int, *, closed: bool = False) -> Floats:
-    """Return the points (n, d) of a curve as float64, without a repeated first point of a `closed` curve.
+    """Return `points` (n, d) of a curve as float64, without a repeated first point if the curve is `closed`.
 
-    `what` is the curve and `point` a point with its index, ``point {}``, in messages; `dimension` is d.
-    Raises InputError: another shape; too few points (2, closed 3); a point not finite or equal to its
-    neighbour.
+    `what` names the curve in messages. `point`, such as ``point {}``, names a point with its index.
+    `dimension` is d. Raises InputError: another shape; fewer than 2 points (closed: 3); a point that is not
+    finite or equals its neighbour.
     """
     nodes = np.array(points, dtype=np.float64)
     if nodes.ndim != 2 or nodes.shape[1] != dimension:
@@ -100,10 +104,10 @@ def open_slopes(
 ) -> tuple[Floats, Floats]:
     """Return the slopes (intervals, d) at the start and at the end of each interval of an open curve.
 
-    Between neighbouring `stops` (indices of points, among them the first and the last) there is a spline; all
-    are solved as one tridiagonal system. `chord` (intervals, d) are the vectors between points, `h`
-    (intervals,) their lengths. End slopes are `held` (2, intervals, d) where that is finite; else outer
-    intervals are parabolas, m_0 + m_1 = 2 delta_0.
+    Between neighbouring `stops` (indices of points, with the first and the last) there is a spline. `chord`
+    (intervals, d) are the vectors between points, `h` (intervals,) their lengths. Where `held` (2, intervals,
+    d) is finite, it is the slope at an end of a spline. Elsewhere the outer interval is a parabola. All
+    splines are solved as one tridiagonal system.
     """
     delta = chord / h[:, None]
     doubled = np.zeros(len(h) + 1, dtype=np.intp)
@@ -133,8 +137,7 @@ def open_slopes(
 def periodic_slopes(chord: Floats, h: Floats) -> Floats:
     """Return the slopes (n, d) of the periodic spline at the start of each interval.
 
-    Sherman-Morrison formula. `chord` (n, d) are the vectors from each point to the next, `h` (n,) their
-    lengths.
+    `chord` (n, d) are the vectors from each point to the next, `h` (n,) their lengths.
     """
     delta = chord / h[:, None]
     before = rolled(h, 1)
@@ -154,11 +157,11 @@ def periodic_slopes(chord: Floats, h: Floats) -> Floats:
 def limited(
     points: Floats, start: Floats, stop: Floats, *, closed: bool, corners: Indices
 ) -> tuple[Floats, Floats]:
-    """Return the slopes (intervals, 2) `start` and `stop` of each interval without overshoots.
+    """Return slopes (intervals, 2) `start` and `stop` of each interval, limited to avoid overshoots.
 
-    Each tangent stays near the directions of the two chords at its point (n, 2). At `corners` (indices of
-    points), where it has one chord, it may deviate by as much as the polygon turns at the other end of this
-    chord. A closed curve does not repeat its first point.
+    The tangent at a point (n, 2) stays near the directions of its two chords. At `corners` (indices of
+    points) it has one chord; it may deviate from it by as much as the polygon turns at the chord's other end.
+    A closed curve does not repeat its first point.
     """
     n = len(points)
     chord = rolled(points, -1) - points  # the last of an open curve is not used

@@ -40,7 +40,7 @@ def check_domain(domain: Domain) -> None:
 
 
 def describe(domain: Domain, number: int) -> str:
-    """Return the index and the names of a loop as text, for messages.
+    """Return the index and the names of the loop `number` as text, for messages.
 
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     >>> describe(Domain.of_polygons([square]), 0)

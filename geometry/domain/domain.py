@@ -33,8 +33,8 @@ class Domain:
     periodic : tuple of Periodic, optional
         Pairs of periodic parts of the outer loop.
     heights, counts : mapping, optional
-        Prescribed first-cell heights and numbers of cells, by the name of a part of a loop. A mirror symmetry
-        is used only if parts that are mirror images have equal prescribed values.
+        Prescribed first-cell heights and numbers of cells along a part of a loop, by the name of this part. A
+        mirror symmetry is used only if parts that are mirror images have equal prescribed values.
 
     Raises
     ------
@@ -69,11 +69,6 @@ class Domain:
             For each polygon either one name, or a list with one name for each part between two corners, in
             the order of the points, starting at the first corner. Default: ``outer``, ``body``, ``body2`` ...
 
-        Returns
-        -------
-        Domain
-            The domain inside the first polygon and outside the others.
-
         Raises
         ------
         InputError
@@ -98,17 +93,17 @@ class Domain:
 
     @cached_property
     def area(self) -> float:
-        """Area between the polygons through the points of the loops."""
+        """Area of the domain, with loops that are polygons through their points."""
         return float(sum(polygon_area(loop.curve.points) for loop in self.loops))
 
     @property
     def curved_areas(self) -> list[float]:
-        """Area bounded by the curve of each loop, not by the polygon through its points; holes below 0."""
+        """Area bounded by the curve of each loop (not by the polygon through its points); < 0 for holes."""
         return [float(polygon_area(loop.curve.polyline(_PARTS))) for loop in self.loops]
 
     @cached_property
     def lengths(self) -> Floats:
-        """(loops,) arc lengths of the loops."""
+        """Arc lengths (loops,) of the loops."""
         return np.array([loop.length for loop in self.loops])
 
     def at(self, loop: Indices, arc: Floats) -> Floats:
@@ -122,8 +117,8 @@ class Domain:
     def layered_loops(self) -> range:
         """Indices of the loops that get layers if no wall is named: the holes.
 
-        Without holes, the outer loop gets layers if the name of one of its parts, such as inlet, means no
-        wall.
+        Without holes, it is the outer loop, if the name of one of its parts (such as inlet) says that this
+        part is no wall.
         """
         alone = len(self.loops) == 1 and not self.periodic
         channel = alone and not all(map(may_be_wall, self.loops[0].names))

@@ -21,10 +21,11 @@ _SAMPLES = 2000  # points on all walls together
 
 
 def wall_gaps(domain: Domain, loop: Loop, arcs: Floats) -> Floats:
-    """Return the distances (n,) from points of a loop at `arcs` (n,) to the nearest wall in front of them.
+    """Return distances (n,) from points of a loop, at arc lengths `arcs` (n,), to the nearest wall in front.
 
     A wall of any loop is in front if its direction deviates from the inward normal by at most 53 degrees.
-    Gaps between the two walls at a corner where two cells meet do not count. No wall in front: infinity.
+    Gaps between the two walls of a corner at which two cells meet do not count. Without a wall in front, the
+    distance is infinite.
     """
     walls, points, along = wall_points(domain.loops), loop.at(arcs), loop.tangent(arcs)
     gaps = gaps_in_front(walls, points, along)
@@ -53,10 +54,10 @@ def _sample_counts(loops: Sequence[Loop]) -> list[int]:
 
 
 def gaps_in_front(walls: Floats, points: Floats, along: Floats) -> Floats:
-    """Return the distance (n,) from `points` (n, 2) to the nearest of the points `walls` (m, 2) in front.
+    """Return distances (n,) from `points` (n, 2) on a wall to the nearest point of `walls` (m, 2) in front.
 
-    `along` (n, 2) are unit tangents of the wall at `points`; the normal points to the left of the tangent. A
-    wall point is in front if its direction deviates from the normal by at most 53 degrees.
+    `along` (n, 2) are unit tangents of the wall at `points`; the normal points to their left. A wall point is
+    in front if its direction deviates from the normal by at most 53 degrees. If there is none: infinity.
     """
     gaps, same = np.empty(len(points)), _SAME * extent_of(walls)
     walls, points, along = (np.ascontiguousarray(each) for each in (walls, points, along))

@@ -15,7 +15,7 @@ APART = 0.01
 
 
 def with_kinks(domain: Domain) -> Domain:
-    """Return the domain with corners of two cells also at kinks (`find_kinks`) of its polygons.
+    """Return the domain with its polygons' kinks (`find_kinks`) as corners at which two cells meet.
 
     Each kink then has a node, and no cell edge cuts it off.
     """

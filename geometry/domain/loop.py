@@ -28,10 +28,10 @@ class Loop:
 
     Parameters
     ----------
-    curve : closed curve through the `points` (n, 2) of the input; arc lengths start at the first point. The
-        curve of a polygon is the polygon itself, that of an airfoil is a spline between corners.
+    curve : closed curve through the points (n, 2) of the input; arc lengths start at the first point. For a
+        polygon it is the polygon itself, for an airfoil a spline between corners.
     corners : ascending indices of the points that are corners. A grid has a node at each.
-    names : one name for the whole loop, or one for each stretch between corners.
+    names : one name for the whole loop, or one for each part between corners.
     cells : number of cells that should meet at each corner; if empty, the numbers follow from the angles.
 
     Raises InputError: a corner index that is out of range; the wrong number of names.
@@ -56,7 +56,7 @@ class Loop:
     def of_polygon(
         cls, points: Floats, corners: tuple[int, ...] | None = None, names: tuple[str, ...] = ("outer",)
     ) -> Self:
-        """Return the loop along a polygon `points` (n, 2), with the domain on its left.
+        """Return the loop along the polygon `points` (n, 2), which has the domain on its left.
 
         `corners` are indices of points; None detects them by the turning angle. `names` are as in `Loop`.
         """
@@ -67,7 +67,7 @@ class Loop:
 
     @property
     def length(self) -> float:
-        """Arc length."""
+        """Arc length of the whole loop."""
         return self.curve.length
 
     @cached_property
@@ -77,7 +77,7 @@ class Loop:
 
     @property
     def pieces(self) -> tuple[Floats, Floats]:
-        """Arc lengths (p,) at which the pieces between corners start, and lengths (p,) of the pieces."""
+        """Arc lengths (p,) at which the pieces between corners start, and lengths (p,) of these pieces."""
         starts = self.corner_arcs if self.corners else np.zeros(1)
         return starts, np.diff(starts, append=starts[0] + self.length)
 
@@ -99,24 +99,25 @@ class Loop:
         return np.clip(halves_to_even, 1, 4).astype(np.intp)
 
     def at(self, arc: Floats) -> Floats:
-        """Return the points (m, 2) at arc lengths (m,), taken modulo the length."""
+        """Return the points (m, 2) at arc lengths `arc` (m,), taken modulo the length of the loop."""
         return self.curve.at(np.mod(arc, self.length))
 
     def tangent(self, arc: Floats) -> Floats:
-        """Return unit tangents (m, 2) at arc lengths (m,); at a corner, the tangent just after it."""
+        """Return unit tangents (m, 2) at arc lengths `arc` (m,); at a corner, the tangent just after it."""
         return self.curve.tangent(np.mod(arc, self.length))
 
     def name_at(self, arc: float) -> str:
-        """Return the name of the stretch that contains an arc length."""
+        """Return the name of the part of the loop that contains an arc length."""
         if len(self.names) == 1:
             return self.names[0]
         stretch = int(np.searchsorted(self.corner_arcs, arc % self.length, side="right")) - 1
         return self.names[stretch]
 
     def steps(self, arcs: Floats, ways: Floats | float) -> Floats:
-        """Return the signed arc lengths (n - 1,) between `arcs` (n,) of nodes in order along the loop.
+        """Return the signed arc lengths (n - 1,) between nodes at `arcs` (n,), in order along the loop.
 
-        `ways` is 1 for nodes in the direction of the loop, else -1: one step may pass half of the loop.
+        `ways` is 1 for nodes in the direction of the loop, else -1. So a step may be longer than half the
+        loop.
         """
         step = shortest_ways(np.diff(arcs), self.length)
         return np.where(step * ways < -EQUAL * self.length, step + ways * self.length, step)

@@ -25,7 +25,7 @@ _BITS = 50  # of coordinates that are kept where sums of them have to be exact
 
 @dataclass(frozen=True)
 class Periodic:
-    """Two parts of the outer loop (ranges of arc length); `shift` moves the first onto the second."""
+    """Two periodic parts of the outer loop; `shift` moves the first onto the second."""
 
     first: tuple[float, float]
     """Arc lengths where the first stretch starts and ends, in the direction of the loop."""
@@ -35,9 +35,9 @@ class Periodic:
 
 
 def rounded(values: Floats, domain: Domain) -> Floats:
-    """Return coordinates (..., 2), rounded so that the order in which shifts are added has no effect.
+    """Return coordinates (..., 2), rounded so that shifts can be added in any order with the same result.
 
-    Nothing is rounded if the shifts are along different axes.
+    If the periodic shifts of the domain are along different axes, nothing is rounded.
     """
     shifts = np.unique(np.abs([each.shift for each in domain.periodic]), axis=0)
     if (np.count_nonzero(shifts, axis=0) < 2).all():
@@ -48,16 +48,11 @@ def rounded(values: Floats, domain: Domain) -> Floats:
 
 
 def with_periodic_sides(domain: Domain, pairs: Sequence[tuple[str, str]]) -> Domain:
-    """Return the domain with periodic `pairs` of sides of its outer loop, each given by two names.
+    """Return the domain with periodic sides of its outer loop; `pairs` gives the two names of each pair.
 
     Points at which a periodic side turns by less than 45 degrees are no longer corners, so that nodes can
-    move there.
-
-    Raises
-    ------
-    InputError
-        No part of the outer loop has one of the names; a name is given twice; the sides of a pair are not
-        translated copies of each other (the message gives the distance).
+    move there. Raises InputError: no part of the outer loop has one of the names; a name is given twice; the
+    sides of a pair are not translated copies of each other (the message gives the distance).
     """
     if not pairs:
         return domain

@@ -7,10 +7,10 @@ from meshonet.geometry.domain.loop import Loop
 
 
 def place_at(loop: Loop, arc: Floats) -> Floats:
-    """Return numbers (n,), called places, for the points of a `loop` at the arc lengths `arc` (n,).
+    """Return a number (n,), called place, for each of the points of a `loop` at arc lengths `arc` (n,).
 
-    The integer part is the index of the last corner before the point. The fractional part is the fraction of
-    the arc length from this corner to the next. Without corners, it is that of the whole length.
+    Its integer part is the index of the last corner before the point. Its fractional part is the fraction of
+    the arc length from this corner to the next. Without corners, it is the fraction of the whole length.
     """
     arc = np.mod(arc, loop.length)
     if not loop.corners:
@@ -22,7 +22,7 @@ def place_at(loop: Loop, arc: Floats) -> Floats:
 
 
 def arc_at(loop: Loop, place: Floats) -> Floats:
-    """Return the arc lengths (n,), in [0, length), of places (n,)."""
+    """Return the arc lengths (n,), in [0, length), at places (n,) of a loop (see `place_at`)."""
     if not loop.corners:
         return np.asarray(np.mod(place, 1.0) * loop.length)
     begins, lengths = loop.pieces
@@ -32,7 +32,7 @@ def arc_at(loop: Loop, place: Floats) -> Floats:
 
 
 def cells_at(loop: Loop, place: Floats) -> Indices:
-    """Return the number (n,) of cells that should meet at each of the places (n,); 0 except at corners."""
+    """Return the number (n,) of cells that should meet at places (n,) of a loop; 0 except at corners."""
     number = np.floor(place).astype(np.intp)
     if not loop.corners:
         return np.zeros(len(place), dtype=np.intp)

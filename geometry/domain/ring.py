@@ -24,10 +24,10 @@ def ring_loop(
 
     Parameters
     ----------
-    points : (n, 2) of either orientation; points that repeat their neighbour are removed.
+    points : (n, 2) points of the polygon in either direction; repeated neighbours are removed.
     hole : whether the domain is outside the polygon.
     corners : indices of the points that are corners; None detects them by their turning angles.
-    names : one name, or one for each stretch between corners, in the order of `corners`.
+    names : one name, or one for each part between corners, in the order of `corners`.
     places : position of each point in the input, for messages.
 
     Raises InputError: there are fewer than three points or no area; the polygon crosses or touches itself; a

@@ -22,7 +22,10 @@ def _table(loop: Loop) -> tuple[Floats, Floats]:
 
 
 def turning_between(loop: Loop, first: Floats, last: Floats) -> Floats:
-    """Return integrals (k,) of a loop's |curvature|, in degrees, from `first` to `last`, without corners."""
+    """Return the angles (k,) in degrees by which a loop turns between arc lengths, without its corners.
+
+    They are integrals of |curvature| from arc length `first` (k,) to `last` (k,).
+    """
     arcs, turned = _table(loop)
     return _turned(loop, last, arcs, turned) - _turned(loop, first, arcs, turned)
 
@@ -33,7 +36,7 @@ def _turned(loop: Loop, arc: Floats, arcs: Floats, turned: Floats) -> Floats:
 
 
 def corners_between(loop: Loop, first: float, last: float) -> tuple[Floats, Indices]:
-    """Return the corners strictly between two arc lengths: arc lengths, and how many cells meet at each."""
+    """Return the arc lengths of corners strictly between two arc lengths, and the number of cells at each."""
     low, high = min(first, last), max(first, last)
     rounds = np.floor(low / loop.length) + np.arange(3)
     arcs = (loop.corner_arcs + rounds[:, None] * loop.length).ravel()
@@ -57,8 +60,8 @@ def sizes_by_bend(loop: Loop, largest: float, turn: float) -> tuple[Floats, Floa
 def wall_bend(loop: Loop, arcs: Floats, window: int) -> Floats:
     """Return the absolute curvature (n,) of a loop at ascending arc lengths (n,), in radians per length.
 
-    The curvature is averaged over `window` of the `arcs` on both sides; turning at corners does not count.
-    All corners must be among `arcs`.
+    It is averaged over `window` of the `arcs` on either side. Turning at corners does not count. All corners
+    must be among `arcs`.
     """
     along = loop.tangent(arcs)
     direction = arctan2(along[:, 1], along[:, 0])

@@ -20,14 +20,17 @@ BEND = np.radians(25.0)  # a turn at a point of a curve that makes it a corner
 
 
 class BodyCurve(NamedTuple):
-    """A closed curve, counter-clockwise around 0, first point not repeated; `corners` are point indices."""
+    """A closed curve, counter-clockwise around 0, that does not repeat its first point.
+
+    `corners` are the indices of points that are corners.
+    """
 
     points: Complexes
     corners: tuple[int, ...] = ()
 
 
 def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:
-    """Return a random O boundary: a simple body with centroid 0, and a far field around the body."""
+    """Return a random O boundary: a simple body with its centroid at 0, and a far field around it."""
     while True:
         body, far = _body(rng), _far(rng)
         placed = _placed_within(body, far, rng)
@@ -199,10 +202,10 @@ def _even_steps(z: Complexes) -> Complexes:
 
 
 def arc_lengths(z: Complexes) -> Floats:
-    """Return the arc length (n,) at each point of a polygon (n,), from 0."""
+    """Return the arc lengths (n,), from 0, at the points `z` (n,) of a polygon."""
     return np.concatenate([[0.0], np.cumsum(modulus(np.diff(z)))])
 
 
 def at_lengths(z: Complexes, length: Floats, at: Floats) -> Complexes:
-    """Return points (m,) at arc lengths `at` (m,) of a polygon (n,) with arc lengths `length` (n,)."""
+    """Return points (m,) at arc lengths `at` (m,) of a polygon `z` (n,) with arc lengths `length` (n,)."""
     return np.interp(at, length, z.real) + 1j * np.interp(at, length, z.imag)

@@ -22,7 +22,7 @@ RANDOM = {"procedural": "procedural", "four-sided": "four_sided", "bodies": "bod
 
 @dataclass(frozen=True)
 class Draw:
-    """One member of a family; `seed` and `index` determine all random numbers."""
+    """One member of a family of shapes; `seed` and `index` determine all its random numbers."""
 
     kind: str
     family: Family | None  # one of the paper's six, or None for random shapes
@@ -34,12 +34,12 @@ class Draw:
 
     @property
     def name(self) -> str:
-        """Family name and index."""
+        """Name of the family and index of the member."""
         return f"{self.kind}-{self.index}"
 
     @property
     def parameter(self) -> float:
-        """The parameter of this member of the family."""
+        """Value of the shape parameter of this member."""
         rng = np.random.default_rng([self.seed, self.index])
         return self.low + (self.high - self.low) * float(rng.random())
 
@@ -57,7 +57,7 @@ class Draw:
 
 @dataclass(frozen=True)
 class Draws(Sequence[Draw]):
-    """A sequence of `length` members of a family, each with its split; a member is made when it is used."""
+    """A sequence of `length` members of a family, each with its split; members are made when used."""
 
     first: Draw
     length: int
@@ -82,9 +82,9 @@ def draws(
 ) -> Draws:
     """Return `count` members of the family `name`; each boundary is generated at its first use.
 
-    `spread` is the range ``A:B`` of the parameter; None: the default range of the family. `way` is how
-    members are split (`split`); None: they are not split. Raises InputError: an unknown family; an invalid
-    range, or a range beyond the limits of the family; members that cannot be split.
+    `spread` is the range ``A:B`` of the parameter; if None, it is the default range of the family. `way` is
+    how members are split into training and test (see `split`); if None, they are not. Raises InputError: an
+    unknown family; a range that is invalid or beyond the limits of the family; members that cannot be split.
     """
     if name not in (*FAMILIES, *RANDOM):
         known = "use one of " + ", ".join((*FAMILIES, *RANDOM))

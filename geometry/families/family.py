@@ -21,7 +21,7 @@ Corners = list[tuple[float, float]]
 
 @dataclass(frozen=True)
 class Family:
-    """A family of shapes with one parameter, drawn from `low` to `high` by default."""
+    """A family of shapes with one parameter; by default, its values are drawn from `low` to `high`."""
 
     name: str
     parameter: str  # meaning of the parameter, with its unit
@@ -34,7 +34,7 @@ class Family:
     to_low: bool = False  # whether extrapolation tests low values of the parameter instead of high values
 
     def boundary(self, parameter: float, ni: int, nj: int) -> Boundary:
-        """Return the member with `parameter` and ni x nj nodes; its name has the family and the parameter.
+        """Return the boundary of the member with the given `parameter`, with ni x nj nodes.
 
         Raises InputError: a parameter out of range, or too few nodes for the corners.
         """
@@ -56,9 +56,9 @@ def family(name: str) -> Family:
 
 
 def polyline(corners: Corners, n: int, like: Corners | None = None) -> Floats:
-    """Return n nodes (n, 2) along a polyline, in nearly equal steps; every corner is bitwise a node.
+    """Return `n` nodes (n, 2) along a polyline, in nearly equal steps; every corner is bitwise a node.
 
-    With `like`, corners have the same node indices as the corners of the polyline `like`.
+    With `like`, the corners have the node indices that the corners of the polyline `like` would have.
 
     >>> polyline([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)], 5).tolist()
     [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.0, 0.5], [1.0, 1.0]]
@@ -83,8 +83,8 @@ def arch(height: float, ni: int, nj: int) -> Boundary:
 def hexagon(angle: float, ni: int, nj: int) -> Boundary:
     """Case 2: return a square with a kink of `angle` degrees in its top and in its bottom.
 
-    The kinks are at (1/2, 1 + h) and (1/2, -h). `angle` is measured inside the domain: 90 degrees for
-    h = 1/2.
+    The kinks are at (1/2, 1 + h) and (1/2, -h). `angle` is measured inside the domain. It determines h, which
+    is 1/2 for 90 degrees.
     """
     h = 0.5 / math.tan(math.radians(0.5 * angle))
     south = polyline([(0.0, 0.0), (0.5, -h), (1.0, 0.0)], ni)
@@ -93,11 +93,11 @@ def hexagon(angle: float, ni: int, nj: int) -> Boundary:
 
 
 def wrench(opening: float, ni: int, nj: int) -> Boundary:
-    """Case 3: return a unit square with a notch, `opening` wide, in its top, like the jaw of a wrench.
+    """Case 3: return a unit square with a notch of width `opening` in its top, like the jaw of a wrench.
 
-    The notch is centred at x = 1/2 and runs from y = 1 down to 0.6. The tips at both sides of the notch are
-    at y = 1.15, at a distance of 0.05 in x. Elliptic grids fold at the lower corners of the notch. Corners
-    have the node indices of an opening of 0.3, so that nodes depend smoothly on the opening.
+    The notch is centred at x = 1/2 and reaches from y = 1 down to 0.6. The tips on both sides of the notch
+    are at y = 1.15, at a distance of 0.05 in x. Elliptic grids fold at the lower corners of the notch.
+    Corners have the node indices of an opening of 0.3, so that nodes depend smoothly on `opening`.
     """
     south, north = polyline([(0.0, 0.0), (1.0, 0.0)], ni), polyline(_jaw(opening), ni, like=_jaw(0.3))
     return _upright(south, north, nj, f"wrench-{opening:.6g}")
@@ -111,7 +111,7 @@ def _jaw(opening: float) -> Corners:
 
 
 def semicircle(centre: float, ni: int, nj: int) -> Boundary:
-    """Case 4: return a channel, 2 by 1, with a semicircle of radius 0.2 on its floor at x = `centre`."""
+    """Case 4: return a channel, 2 by 1, with a semicircle of radius 0.2 around x = `centre` on its floor."""
     radius, length = 0.2, 2.0
     first, arc = centre - radius, np.pi * radius
     whole = length - 2 * radius + arc

@@ -25,7 +25,10 @@ ORDER = 6  # order of the Bernstein polynomials
 
 
 def boundary(rng: np.random.Generator, ni: int, nj: int, spacing: Spacing | None = None) -> Boundary:
-    """Return a random airfoil's O boundary with far field at 4 to 60 chords; `spacing`: wall distribution."""
+    """Return the O boundary of a random airfoil, with a random far field at 4 to 60 chords.
+
+    `spacing` is the distribution of nodes on the wall; None: a random one.
+    """
     while True:
         settings: dict[str, Any] = {"spacing": spacing} if spacing else {}
         far_field = math.exp(rng.uniform(math.log(4.0), math.log(60.0)))

@@ -17,10 +17,10 @@ def split(
 ) -> tuple[str, ...]:
     """Return ``train`` or ``test`` for each of `parameters`; `way` is one of `WAYS`.
 
-    For tests, ``interpolation`` takes the members with middle values of the parameter, ``extrapolation``
-    those with the highest values (with `low`, the lowest), ``random`` a random choice. `share` is the
-    fraction of test members: at least one, with at least two left for training. Raises InputError: an unknown
-    way; fewer than three members; equal parameters, unless random.
+    The test members have the middle values of the parameter for ``interpolation``, the highest values for
+    ``extrapolation`` (the lowest with `low`), and are drawn at random for ``random``. `share` is the fraction
+    of test members: at least one, and at least two are left for training. Raises InputError: an unknown way;
+    fewer than three members; equal parameters, unless the way is random.
 
     >>> split([0.3, 0.1, 0.2], "extrapolation")
     ('test', 'train', 'train')

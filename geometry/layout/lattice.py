@@ -16,22 +16,22 @@ if TYPE_CHECKING:
 
 
 def corner_jacobians(corners: Floats) -> Floats:
-    """Return the Jacobians (m, 4) at the corners (m, 4, 2) of planar quadrilaterals."""
+    """Return the Jacobians (m, 4) at the four corners of planar quadrilaterals `corners` (m, 4, 2)."""
     return cross2(np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners)
 
 
 def smallest_jacobians(nodes: Floats, quads: Indices) -> Floats:
-    """Return the smallest corner Jacobian (m,) of each of the quads (m, 4) of nodes (n, 2)."""
+    """Return the smallest corner Jacobian (m,) of each of the `quads` (m, 4), indices of `nodes` (n, 2)."""
     return smallest_corners(np.ascontiguousarray(nodes), np.ascontiguousarray(quads, dtype=np.intp))
 
 
 def lattice_quads(blocks: Sequence[Indices]) -> Indices:
-    """Return the quads (m, 4), counter-clockwise, of blocks (ni, nj) of node numbers; j varies fastest."""
+    """Return the quads (m, 4), counter-clockwise, of `blocks` (ni, nj) of node indices; j varies fastest."""
     return np.concatenate([ring_of(block).reshape(4, -1).T for block in blocks])
 
 
 def around_body(layout: Layout) -> Layout:
-    """Return a layout of one ring-shaped block, with i running around the hole and j away from the hole.
+    """Return a layout of one ring-shaped block with i around the hole, and j from the hole outwards.
 
     The block stays right-handed, so i runs clockwise. Other layouts are returned unchanged.
     """

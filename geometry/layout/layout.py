@@ -44,12 +44,15 @@ class Layout:
 
     @cached_property
     def vertices(self) -> Indices:
-        """(v,) numbers of the nodes at corners of blocks, ascending."""
+        """Indices (v,) of the nodes at corners of blocks, ascending."""
         corners = [block[[0, -1, -1, 0], [0, 0, -1, -1]] for block in self.blocks]
         return np.asarray(distinct(np.concatenate(corners)))
 
     def beside(self, on: Bools) -> list[Indices]:
-        """Return block nodes (k, m) for each side in the mask `on` (n,) of nodes; column 0 is the side."""
+        """Return, for each block side whose nodes are all in the mask `on` (n,), the block's nodes (k, m).
+
+        Each array of node indices is turned so that its column 0 is the side.
+        """
         tables = [t for block in self.blocks for t in (block, block[:, ::-1], block.T, block.T[:, ::-1])]
         return [table for table in tables if on[table[:, 0]].all()]
 

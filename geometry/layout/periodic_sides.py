@@ -17,7 +17,7 @@ Sides = tuple[Periodic, Indices, Indices]
 
 
 def sides_of(mesh: QuadMesh) -> list[Sides]:
-    """Return each periodic pair, with the nodes along its first side and along its second side."""
+    """Return each periodic pair of sides, with the nodes of its first side and those of its second."""
     after = following(mesh)
     return [
         (each, _chain(mesh, after, each.first), _chain(mesh, after, each.second)[::-1])
@@ -26,7 +26,7 @@ def sides_of(mesh: QuadMesh) -> list[Sides]:
 
 
 def following(mesh: QuadMesh) -> Indices:
-    """Return the next node (n,) of each node along the boundary (domain on the left); -1 for inner nodes."""
+    """Return, for each node (n,), the next one along the boundary (domain on the left); -1 for inner ones."""
     cell, side = np.nonzero(mesh.on_wall[mesh.edge_of])
     after = np.full(len(mesh.nodes), -1, dtype=np.intp)
     after[mesh.quads[cell, side]] = mesh.quads[cell, (side + 1) % 4]
@@ -34,7 +34,7 @@ def following(mesh: QuadMesh) -> Indices:
 
 
 def with_tied_sides(mesh: QuadMesh) -> QuadMesh:
-    """Return the mesh with the nodes of periodic sides tied in pairs, each pair at its mean position."""
+    """Return the mesh with nodes of periodic sides tied in pairs; each pair moves to its mean position."""
     if not mesh.domain.periodic:
         return mesh
     places, nodes = mesh.places, mesh.nodes.copy()
@@ -48,7 +48,7 @@ def with_tied_sides(mesh: QuadMesh) -> QuadMesh:
 
 
 def matched_nodes(mesh: QuadMesh) -> Floats:
-    """Return the nodes (n, 2), with the second side of each pair bitwise equal to the shifted first side."""
+    """Return the nodes (n, 2), where second sides of periodic pairs are bitwise the shifted first sides."""
     nodes, sides = mesh.nodes.copy(), sides_of(mesh)
     for _, first, _ in sides:
         nodes[first] = rounded(nodes[first], mesh.domain)

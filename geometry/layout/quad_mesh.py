@@ -16,7 +16,7 @@ _PROJECTIONS = 3  # onto tangents of a loop, which converge quadratically
 
 @dataclass(frozen=True, eq=False)
 class Places:
-    """Positions of nodes on the boundary of a domain; each array has one entry per node."""
+    """Positions of the nodes of a mesh on the boundary of its domain; each array has one entry per node."""
 
     loop: Indices
     """Number of the loop, -1 inside."""
@@ -39,12 +39,12 @@ class Places:
         return Places(*(np.concatenate([getattr(each, name) for each in every]) for name in vars(self)))
 
     def along(self, loop: int) -> Indices:
-        """Return the nodes (k,) on a loop, by arc length."""
+        """Return the indices (k,) of the nodes on a loop, in order of arc length."""
         on = np.flatnonzero(self.loop == loop)
         return np.asarray(on[np.argsort(self.arc[on], kind="stable")])
 
     def take(self, nodes: Indices) -> Places:
-        """Return the places of the given nodes; their partners are dropped."""
+        """Return the places of the given nodes, without partners."""
         cleared = np.full(len(nodes), -1, dtype=np.intp)
         return Places(self.loop[nodes], self.arc[nodes], self.cells[nodes], cleared)
 
@@ -72,28 +72,28 @@ class QuadMesh:
 
     @property
     def edges(self) -> Indices:
-        """(e, 2) node indices of each edge, the lower index first; edges are in ascending order."""
+        """Node indices (e, 2) of each edge, the lower index first; edges are in ascending order."""
         return self._sides[2]
 
     @property
     def edge_lengths(self) -> Floats:
-        """(e,) lengths of the edges."""
+        """Lengths (e,) of the edges."""
         first, second = self.nodes[self.edges].transpose(1, 2, 0)
         return np.hypot(*(second - first))
 
     def edges_between(self, first: Indices, second: Indices) -> Indices:
-        """Return the indices of the edges between nodes `first` and `second`, two arrays of one shape."""
+        """Return the indices of the edges from nodes `first` to nodes `second` (arrays of equal shape)."""
         low, high, n = np.minimum(first, second), np.maximum(first, second), len(self.nodes)
         return np.asarray(np.searchsorted(self.edges[:, 0] * n + self.edges[:, 1], low * n + high))
 
     @property
     def edge_of(self) -> Indices:
-        """(m, 4) index of the edge from each node of a quad to the next node of the quad."""
+        """Index (m, 4) of the edge from each node of a quad to the next node of the same quad."""
         return self._sides[0]
 
     @property
     def twin(self) -> Indices:
-        """(m, 4) for each edge of each quad: 4 q + k if it is edge k of another quad q, else -1."""
+        """For each edge of each quad (m, 4): 4 q + k if it is also edge k of another quad q, else -1."""
         return self._sides[1]
 
     @property
@@ -103,55 +103,56 @@ class QuadMesh:
 
     @cached_property
     def on_wall(self) -> Bools:
-        """(e,) whether an edge belongs to one quad only."""
+        """Whether each edge (e,) belongs to one quad only."""
         return np.bincount(self.edge_of.ravel(), minlength=len(self.edges)) == 1
 
     @cached_property
     def wall_nodes(self) -> Bools:
-        """(n,) whether a node is on the boundary."""
+        """Whether each node (n,) is on the boundary."""
         on = np.zeros(len(self.nodes), dtype=bool)
         on[self.edges[self.on_wall].ravel()] = True
         return on
 
     @cached_property
     def valence(self) -> Indices:
-        """(n,) number of quads at each node."""
+        """Number (n,) of quads that meet at each node."""
         return np.bincount(self.quads.ravel(), minlength=len(self.nodes))
 
     @cached_property
     def irregular(self) -> Bools:
-        """(n,) whether a node is irregular: inside without four quads, or on the boundary without two."""
+        """Whether each node (n,) is irregular: not 4 quads meet there, or not 2 if it is on the boundary."""
         return self.valence != np.where(self.wall_nodes, 2, 4)
 
     @cached_property
     def of_quads(self) -> dict[object, object]:
-        """Cache of results that depend only on the quads, shared by all meshes of these quads."""
+        """Cache of results that depend only on the quads; all meshes with the same quads share it."""
         return {}
 
     def aspects(self, lengths: Floats) -> Floats:
-        """Return the aspect ratios (m,) of the quads, for edges of `lengths` (e,).
+        """Return the aspect ratios (m,) of the quads, for edges with the given `lengths` (e,).
 
-        The aspect ratio is sqrt(l12 l30 / (l01 l23)), where lab is the length of the side from corner a to b.
+        The aspect ratio is sqrt(l12 l30 / (l01 l23)); lab is the length of the side from corner a to corner
+        b.
         """
         sides = lengths[self.edge_of]
         return np.asarray(np.sqrt(sides[:, 1] * sides[:, 3] / (sides[:, 0] * sides[:, 2])))
 
     @property
     def tied(self) -> Bools:
-        """(n,) whether a node on a periodic side is tied to a node on the opposite side."""
+        """Whether each node (n,) on a periodic side is tied to a node on the opposite side, its partner."""
         tied = self.places.partner >= 0
         tied[self.places.partner[tied]] = True
         return tied
 
     def shifts(self, images: Indices) -> Floats:
-        """Return the periods (k, 2): vectors from the partners of the nodes `images` (k,) to these nodes."""
+        """Return the vectors (k, 2) to the nodes with indices `images` (k,) from their partners."""
         known = np.array([each.shift for each in self.domain.periodic] or [(0.0, 0.0)])
         way = self.nodes[images] - self.nodes[self.places.partner[images]]
         off = np.hypot(*(way[:, None] - known).transpose(2, 0, 1))
         return np.asarray(known[off.argmin(axis=1)])
 
     def beside_partners(self, nodes: Floats) -> Floats:
-        """Return `nodes` (n, 2) with each tied node at the position of its partner, moved by the period."""
+        """Return `nodes` (n, 2), with each tied node at its partner's position plus the periodic shift."""
         images = np.flatnonzero(self.places.partner >= 0)
         if images.size and self.domain.periodic:
             nodes = nodes.copy()
@@ -159,7 +160,7 @@ class QuadMesh:
         return nodes
 
     def with_nodes(self, nodes: Floats, arc: Floats | None = None) -> QuadMesh:
-        """Return the same quads with nodes (n, 2) and, if given, boundary arc lengths (n,) replaced."""
+        """Return the same quads with other `nodes` (n, 2) and, if given, their new arc lengths `arc` (n,)."""
         places = self.places if arc is None else replace(self.places, arc=arc)
         return self.with_places(nodes, places)
 
@@ -177,7 +178,7 @@ class QuadMesh:
         return self.with_nodes(nodes, arc)
 
     def with_places(self, nodes: Floats, places: Places) -> QuadMesh:
-        """Return the same quads with nodes (n, 2) and their places on the boundary replaced."""
+        """Return the same quads with other `nodes` (n, 2) and other places on the boundary."""
         moved = replace(self, nodes=nodes, places=places)
         known = ("_sides", "on_wall", "wall_nodes", "valence", "irregular", "of_quads")
         # these depend on the quads alone

@@ -15,7 +15,7 @@ Line: TypeAlias = tuple[int, Side, Indices]
 
 
 def shared(lines: list[Line]) -> tuple[list[Connection], list[Line]]:
-    """Return the connections between sides of blocks with the same nodes, and the unmatched sides."""
+    """Return the connections between block sides (`lines`) with the same nodes, and the unmatched sides."""
     waiting: dict[tuple[int, ...], Line] = {}
     connections = []
     for line in lines:
@@ -28,7 +28,7 @@ def shared(lines: list[Line]) -> tuple[list[Connection], list[Line]]:
 
 
 def key_of(nodes: Indices) -> tuple[int, ...]:
-    """Return a key of a line's nodes that does not depend on their direction."""
+    """Return a key for the nodes of a line that is the same for both directions."""
     line = tuple(nodes.tolist())
     return min(line, line[::-1])
 
@@ -36,9 +36,9 @@ def key_of(nodes: Indices) -> tuple[int, ...]:
 def connection_of(
     own: Line, donor: Line, transform: Motion | None = None, at: tuple[int, int] = (0, 0)
 ) -> Connection:
-    """Return the connection of two sides with the same nodes, in either direction.
+    """Return the connection of two block sides with the same nodes, in the same or in opposite order.
 
-    For parts of sides, `at` is the index of the first node of each part in its side.
+    For parts of sides, `at` gives the index of the first node of each part in its side.
     """
     (block, side, nodes), (other, other_side, others) = own, donor
     begin, end = (((first, first + len(nodes) - 1),) for first in at)
@@ -47,7 +47,7 @@ def connection_of(
 
 
 def shared_in_part(lines: list[Line]) -> tuple[list[Connection], list[tuple[Line, int]]]:
-    """Return the connections between parts of sides; also the unconnected parts, with their start indices."""
+    """Return the connections between parts of block sides; also other parts, each with its first index."""
     if not lines:
         return [], []
     edges = np.concatenate([np.sort([nodes[:-1], nodes[1:]], axis=0) for _, _, nodes in lines], axis=1)

@@ -26,7 +26,7 @@ def check_extent(extent: float) -> None:
 
 
 def contains(polygon: Floats, points: Floats) -> Bools:
-    """Return whether points (..., 2) lie inside a polygon (n, 2), by the crossings of a ray to the right."""
+    """Return whether `points` (..., 2) lie inside a polygon (n, 2)."""
     x, y = polygon[:, 0] - points[..., 0, None], polygon[:, 1] - points[..., 1, None]
     u, v = np.roll(x, -1, axis=-1), np.roll(y, -1, axis=-1)
     with np.errstate(divide="ignore", invalid="ignore"):
