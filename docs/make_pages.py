@@ -25,12 +25,12 @@ MODELS_HEAD = """# Shipped models
 
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
-Look here for the training parameters of the models that are part of meshonet. To choose a model see
-[neural operators](../theory/operators.md). The accuracy of each model is in
-[held-out errors](../benchmarks/models.md). `meshonet models NAME` prints the same data.
+Look here for the training parameters of the models (neural networks that generate grids) that are part of
+meshonet. [Neural operators](../theory/operators.md) helps to choose a model, and [held-out
+errors](../benchmarks/models.md) gives the accuracy of each. `meshonet models NAME` prints the same data.
 
-Each model is a safetensors file in `solvers/neural/pretrained/`. The metadata of the file contain the
-training parameters and the held-out errors. `make train` repeats the training.
+Each model is a safetensors file in `solvers/neural/pretrained/`, whose metadata contain these data. `make train`
+repeats the training.
 
 | training parameter | meaning |
 | --- | --- |
@@ -58,16 +58,13 @@ parameters.
 """
 C_GRIDS = """## C grids: no model
 
-meshonet has no model for C grids, because marching gives better C grids than every network that was tested.
-The C grids that `quad-general` predicts are worse than those of transfinite interpolation. After five
-iterations of the variational method, the mean angle of the predicted grids is still farther from 90 degrees
-than the mean angle of the variational grids
-([measurements](../benchmarks/body-operator.md#c-grids-no-model)). `airfoil-o` assumes that the grid is
-periodic in ξ, which a C grid is not.
+meshonet has no model for C grids, because marching gives better C grids than every network that was tested
+([measurements](../benchmarks/body-operator.md#c-grids-no-model)). The C grids that `quad-general` predicts are
+worse than those of transfinite interpolation. `airfoil-o` assumes that the grid is periodic in ξ, which a C
+grid is not.
 
-`infer` generates C grids by [marching](../theory/marching.md) from the wall and the wake, or by the
-variational method if marching fails. The report names the method. For C grids the options `--model`,
-`--polish` and `--device` are errors.
+`meshonet infer` generates C grids by [marching](../theory/marching.md) from the wall and the wake, or by the
+variational method if marching fails. For C grids the options `--model`, `--polish` and `--device` are errors.
 """
 
 FORMATS_HEAD = """# Formats
@@ -79,21 +76,18 @@ by the file extensions. If an extension belongs to several formats, name the for
 `meshonet convert --list-formats` prints this table.
 
 - *names*: whether the format stores names of boundary patches.
-- *3D*: the kinds of three-dimensional grids that the format stores. If the format stores *volumes*,
-  `--extrude H` writes a two-dimensional grid as a volume of thickness H, with K planes of nodes if you add
-  `--planes K`.
+- *3D*: the kinds of three-dimensional grids that the format stores. If it stores *volumes*, `--extrude H` writes
+  a two-dimensional grid as a volume of thickness H.
 - *blocks*: whether the blocks of a multi-block grid are *kept* in the file or *merged* into one unstructured
   mesh. A format without an entry cannot store a multi-block grid.
 - *many*: whether one file can contain several grids or boundaries.
 - *options*: variants of the format. Write them after a colon, for example `--to gmsh:4.1,ascii`. Of words
-  separated by slashes, choose at most one; the first word is the default, unless the extension implies
-  another one.
+  separated by slashes, choose at most one. The first word is the default, unless the extension implies another.
 
 """
 FORMATS_REST = """
-Three other pages give details: [conventions of formats](format-details.md) for multi-block grids, boundaries
-and the variants of Plot3D, [files in three dimensions](format-volumes.md) for volumes and surfaces, and
-[HDF5](hdf5.md) for the structure of datasets.
+Details are on three other pages: [conventions of formats](format-details.md) (multi-block grids, boundaries,
+variants of Plot3D), [files in three dimensions](format-volumes.md) and [HDF5](hdf5.md) (datasets).
 
 ## Files that meshonet cannot read
 
@@ -121,16 +115,18 @@ FAMILIES_HEAD = """# The six test families
 <!-- made by python docs/make_pages.py -->
 
 Use these families of shapes to train and compare neural operators. They are the test cases of the MeshONet
-paper ([results](../benchmarks/paper/index.md)). The shapes of a family depend on one parameter. *arch*,
-*wrench* and *hexagon* start from a square of side 1: the top edge of *arch* is half a sine wave, *wrench* has
-a notch in the top edge, and *hexagon* has a kink in the middle of the top and of the bottom edge.
-*semicircle* is a channel, 2 long and 1 high, with a semicircle on its floor. *airfoil* is a NACA 00xx airfoil
-with a sharp trailing edge, in a circular far field. *hole* is a plate, 2 by 2 around the origin, with a round
-hole.
+paper ([results](../benchmarks/paper/index.md)). The shapes of each family depend on one parameter.
 
-`sample-boundary --family NAME --count N` makes N shapes with parameters in the range below, or from A to B
-with `--range A:B`; `solve-pde` makes their grids. Topology quad means a four-sided grid, O a grid around a
-body or hole.
+- *arch*: a square of side 1 whose top edge is half a sine wave
+- *hexagon*: a square of side 1 with a kink in the middle of the top edge and of the bottom edge
+- *wrench*: a square of side 1 with a notch in the top edge
+- *semicircle*: a channel, 2 long and 1 high, with a semicircle on its floor
+- *airfoil*: a NACA 00xx airfoil with a sharp trailing edge in a circular far field
+- *hole*: a square of side 2 around the origin with a round hole
+
+`meshonet sample-boundary --family NAME --count N` makes N shapes with parameters in the ranges below;
+`--range A:B` gives another range. `meshonet solve-pde` makes their grids. The topology quad is a four-sided
+grid, the topology O a grid around a body or hole.
 """
 
 
