@@ -22,7 +22,7 @@ _SETTINGS: dict[str, dict[str, object]] = {
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write the only grid of `grids` in the meshio format named by `options`."""
+    """Write the only grid of `grids` in a format of the package meshio, which `options` name."""
     import meshio
 
     (kind,) = options or {"stl"}
@@ -33,9 +33,9 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
 
 
 def write_vtu(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the only grid of `grids`: its cells and boundary cells.
+    """Write the cells and the boundary faces of the only grid of `grids`.
 
-    The cell array ``part`` is 0 inside; at the boundary it is the number of the patch, from 1.
+    The cell array ``part`` is 0 for cells. For a boundary face it is the number of its patch, from 1.
     """
     import meshio
 

@@ -25,13 +25,13 @@ _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS}  # errors of a di
 
 @contextlib.contextmanager
 def whole_file(destination: str, *, make_folder: bool = False, beside: bool = False) -> Iterator[Path]:
-    """Return a context with a temporary path, which becomes `destination` if the block succeeds.
+    """Return a context with the path of a temporary file, which becomes `destination` if the block succeeds.
 
-    The file at this path is in the folder of the destination, and renamed in one step; for ``-`` (standard
-    output), devices and pipes it is copied at the end. On any exception the file is removed, and the
-    destination unchanged. `make_folder` makes a missing folder. `beside`: more files are written next to the
-    path, impossible on streams. Raises InputError: the destination is a folder; its folder is missing or not
-    writable; the disk is full.
+    The temporary file is in the folder of the destination and is renamed in one step. If the destination is
+    ``-`` (standard output), a device or a pipe, its content is copied at the end. After any exception it is
+    removed and the destination is unchanged. `make_folder` makes a missing folder. `beside` means that a
+    folder is written as well, which raises InputError for a stream. Raises InputError if the destination is a
+    folder or its folder is missing or not writable, or if the disk is full.
 
     Examples
     --------
@@ -79,7 +79,7 @@ def whole_file(destination: str, *, make_folder: bool = False, beside: bool = Fa
 def whole_folder(target: Path) -> Iterator[Path]:
     """Return a context with an empty folder, which replaces `target` if the block succeeds.
 
-    On any exception the new folder is removed and `target` unchanged.
+    After any exception the new folder is removed and `target` is unchanged.
     """
     _sweep(target.parent)
     part = _part_name(target)
@@ -130,13 +130,13 @@ def _naming(name: str, only: set[int] | None = None) -> Iterator[None]:
 
 
 def final_name(part: Path) -> str:
-    """Return the name that the file at the temporary path `part` gets; any other name is unchanged."""
+    """Return the name that the file at the temporary path `part` will get; for other paths, their name."""
     match = _PART.fullmatch(part.name)
     return match["final"] if match else part.name
 
 
 def check_place(destination: Path, name: str) -> None:
-    """Raise InputError for `name` if `destination` is a folder, or its folder does not exist."""
+    """Raise InputError, with `name`, if `destination` is a folder or its folder does not exist."""
     target = Path(os.path.realpath(destination))
     if target.is_dir():
         raise InputError("is a folder", "name a file in it", source=name)

@@ -32,7 +32,7 @@ _LIKE_DESIGNATION = re.compile(r"([a-z]+)[\s:_-]*(\d[\w.-]*)", re.IGNORECASE)
 
 
 def format_named(name: str) -> Format:
-    """Return a format by name, with options (``gmsh:4.1``), or extension. Raises InputError: unknown."""
+    """Return the format with a name, options included (``gmsh:4.1``), or extension; InputError if unknown."""
     word, _, options = name.lower().lstrip(".").partition(":")
     if word in _OLD_NAMES:
         base, _, own = _OLD_NAMES[word].partition(":")
@@ -51,7 +51,7 @@ def format_named(name: str) -> Format:
 
 
 def format_of(source: Source, fmt: str | None = None) -> Format:
-    """Return the format of a source to be read. Raises InputError: unknown extension and content."""
+    """Return the format `fmt`, or else that of the extension or content. Raises InputError: unknown."""
     if fmt:
         return format_named(fmt)
     claimed = BY_SUFFIX.get(source.suffix, [])
@@ -70,9 +70,9 @@ def format_of(source: Source, fmt: str | None = None) -> Format:
 
 
 def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grids") -> Format:
-    """Return the format in which to write `path_text`; ``-`` is HDF5 unless `fmt` is given.
+    """Return the format `fmt`, or that of the extension of `path_text`; for ``-`` it is HDF5.
 
-    Raises InputError: an unknown extension, or a format that cannot store this `kind`.
+    Raises InputError if the extension is unknown, or if the format cannot store this `kind` of content.
     """
     if not path_text:
         remedy = "name a file, or - for standard output"
@@ -97,7 +97,7 @@ def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grid
 
 
 def picture_format(output: str, to_format: str | None = None) -> Format:
-    """Return the format of a picture `output`; ``-`` is ``png``. Raises InputError: not a picture."""
+    """Return the format of a picture file `output`; ``-`` is ``png``. Raises InputError: no picture."""
     named = to_format or BY_SUFFIX.get(Path(output).suffix.lower()) or not Path(output).suffix
     if not (named or output == "-"):
         raise InputError("is no picture", "use .png, .svg, .pdf or .html", source=printable(output))
@@ -108,11 +108,11 @@ def picture_format(output: str, to_format: str | None = None) -> Format:
 
 
 def read_shapes(text: str, fmt: str | None = None, *, surfaces: bool = False) -> Iterator[Shape]:
-    """Return an iterator over the shapes of a path, of ``-``, or of a designation, ``naca:2412``.
+    """Return an iterator over the shapes of a file, of standard input (``-``) or of ``naca:2412``.
 
-    Grids give their outer edges. After a record that raises InputError, the iterator continues if it can.
-    `surfaces`: flat patches in space stay surfaces.
-    Raises InputError, with the place: a source that cannot be opened, is invalid or of unknown format.
+    Grids give their outer edges; with `surfaces`, flat patches in 3-D stay surfaces. After a shape that
+    raises InputError, the iterator continues if it can. Raises InputError, with the place, if the file cannot
+    be opened, is invalid or has an unknown format.
     """
     if is_designation(text):
         if fmt:
@@ -139,16 +139,16 @@ def _surfaces(read: Callable[[Source], Iterator[Grid]], source: Source) -> Itera
 
 
 def is_cad(text: str, fmt: str | None = None) -> bool:
-    """Return whether a path is a CAD file, whose faces become patches; for ``-`` by `fmt` alone."""
+    """Return whether a file is a CAD file, whose faces become patches; for ``-``, `fmt` alone decides."""
     if is_designation(text) or (text == "-" and fmt is None):  # a stream is read once
         return False
     return (format_named(fmt) if fmt else format_of(source_of(text))).name in ("step", "brep")
 
 
 def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
-    """Return an iterator over the grids of a path or of ``-``, as `read_shapes` over shapes.
+    """Return an iterator over the grids in a file or in standard input (``-``), similar to `read_shapes`.
 
-    Raises InputError: a file that contains only boundaries; see also `read_shapes`.
+    Raises InputError as `read_shapes`, and if the file contains only boundaries.
     """
     if is_designation(text):
         remedy = f"make a grid of it first: meshonet infer {text} -o grid.vts"
@@ -167,9 +167,9 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
 
 
 def read_sections(text: str, fmt: str | None = None) -> Iterator[Grid | Shape]:
-    """Yield the planar grids of a path, or else its shapes; designations and layouts yield shapes.
+    """Yield the grids in a file, or its shapes if it has no grids; layouts and designations yield shapes.
 
-    Raises InputError: see `read_shapes`.
+    Raises InputError as `read_shapes`.
     """
     if not is_designation(text):
         record = format_of(open_source(text), fmt)
@@ -179,12 +179,12 @@ def read_sections(text: str, fmt: str | None = None) -> Iterator[Grid | Shape]:
 
 
 def is_designation(text: str) -> bool:
-    """Return whether `text` is a designation, ``naca:2412`` or ``circle:0.5``, not a file."""
+    """Return whether `text` is a designation such as ``naca:2412`` or ``circle:0.5``, and not a file."""
     return text.lower().startswith(tuple(_DESIGNATIONS)) and not Path(text).exists()
 
 
 def names_many(text: str) -> bool:
-    """Return whether `text` stands for many inputs: a list ``@FILE``, a zip archive or a folder."""
+    """Return whether `text` stands for several inputs: a list ``@FILE``, a zip archive or a folder."""
     if text.startswith("@") or (text.lower().endswith(".zip") and Path(text).is_file()):
         return True
     return not is_designation(text) and Path(text).is_dir()
@@ -235,9 +235,9 @@ def _known() -> str:
 
 
 def source_of(text: str) -> Source:
-    """Return the source with the given name (`open_source`).
+    """Return the source (file or standard input) with the given name.
 
-    Raises InputError: also for designations without a colon, and formats that can only be written.
+    Raises InputError as `open_source`, and if the name is that of a designation or an unreadable format.
     """
     try:
         return open_source(text)

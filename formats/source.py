@@ -27,15 +27,15 @@ LARGEST = 1e150  # bound of coordinates in files, so that areas and their sums a
 
 @dataclass(frozen=True)
 class Source:
-    """Named bytes; either `path` or `data` is set.
+    """A named file or sequence of bytes; either `path` or `data` is set.
 
     Parameters
     ----------
     name : printable name for messages.
-    path : a regular file.
+    path : path of a regular file.
     data : the bytes themselves, for standard input, pipes and tests.
-    split : split of a dataset, ``train`` or ``test``; empty for all samples.
-    rows : selection among these samples; None for all.
+    split : split of a dataset to read, ``train`` or ``test``; empty for all samples.
+    rows : selection among the samples of the split; None for all.
     """
 
     name: str
@@ -46,14 +46,14 @@ class Source:
 
     @property
     def stem(self) -> str:
-        """File name without folder and extension; the name of a shape if the file has none."""
+        """File name without folder and extension; a shape gets this name if the file has none."""
         if self.path:
             return printable(self.path.stem)
         return "stdin" if self.name == "-" else Path(self.name).stem
 
     @property
     def suffix(self) -> str:
-        """Extension in lower case with its dot, or an empty text."""
+        """Extension in lower case with its dot; empty if there is none."""
         return (self.path or Path(self.name)).suffix.lower()
 
     @property
@@ -67,14 +67,14 @@ class Source:
         return self.data if self.data is not None else self.head(-1)
 
     def bytes_below(self, most: int, kind: str) -> bytes:
-        """Return all bytes of a file, "a layout" or the like. Raises InputError: more than `most` bytes."""
+        """Return all bytes. Raises InputError: more than `most`; its message calls the file `kind`."""
         if self.size > most:
             problem = f"{self.size >> 20} MB are too much for {kind}"
             raise InputError(problem, f"give a file below {most >> 20} MB", source=self.name)
         return self.read_bytes()
 
     def text_bytes(self) -> bytes:
-        """Return all bytes of a text file. Raises InputError: it is larger than 16 MB."""
+        """Return all bytes of a text file. Raises InputError if it is larger than 16 MB."""
         data = self.head(_MOST_TEXT + 1)
         if len(data) > _MOST_TEXT:
             problem = f"{self.size >> 20} MB are too much for a text of points"
@@ -82,7 +82,7 @@ class Source:
         return data
 
     def buffer(self) -> bytes | mmap.mmap:
-        """Return all bytes; a large file is mapped into memory."""
+        """Return all bytes; a large file is mapped into memory instead of being read."""
         if self.data is not None or self.size < _MAPPED:
             return self.read_bytes()
         with self.open() as stream:
@@ -97,7 +97,7 @@ class Source:
         return self.path.open("rb")
 
     def head(self, count: int = HEAD_BYTES) -> bytes:
-        """Return the first `count` bytes; all if it is negative."""
+        """Return the first `count` bytes, or all bytes if `count` is negative."""
         with self.open() as stream:
             return stream.read(count)
 
@@ -105,10 +105,10 @@ class Source:
 def open_source(text: str) -> Source:
     """Return the source called `text`: a path, ``-`` for standard input, or ``FILE.zip/MEMBER``.
 
-    ``FILE#test`` and ``FILE#train`` select a split of a dataset, ``FILE#7`` a sample, counted from 0,
-    ``FILE#5:9`` and ``FILE#5::2`` a range, ``FILE#test,0:9`` a range of a split. A file whose name contains
-    the ``#`` takes precedence. Raises InputError: no such file, a folder, a file that may not be read, an
-    empty file.
+    Of a dataset, ``FILE#test`` or ``FILE#train`` selects a split, ``FILE#7`` a sample (counted from 0),
+    ``FILE#5:9`` or ``FILE#5::2`` a range, and ``FILE#test,0:9`` a range of a split. If a file with the whole
+    name exists, it is meant. Raises InputError if the file does not exist, is a folder, is unreadable or is
+    empty.
     """
     split, rows = "", None
     if "#" in text:
@@ -128,7 +128,7 @@ def open_source(text: str) -> Source:
 
 
 def printable(text: str) -> str:
-    r"""Return `text` with control characters and undecodable bytes as escapes, safe for terminals.
+    r"""Return `text` with control characters and undecodable bytes replaced by escapes, safe for terminals.
 
     Examples
     --------
@@ -141,7 +141,7 @@ def printable(text: str) -> str:
 
 
 def reason_of(error: Exception) -> str:
-    """Return the first line of an error's message, or else its type, safe for terminals."""
+    """Return the first line of an error's message, or its type if there is none, safe for terminals."""
     return printable(str(error).split("\n")[0])[:100] or type(error).__name__
 
 
@@ -167,7 +167,7 @@ def _missing(text: str) -> InputError:
 
 
 def nearest(path: Path) -> str:
-    """Return ``did you mean ...?`` with the most similar file name in the folder, or nothing."""
+    """Return ``did you mean ...?`` with the most similar file name in the folder, or an empty text."""
     try:
         names = [entry.name for entry in itertools.islice(path.parent.iterdir(), _MOST_NAMES)]
     except (OSError, ValueError):

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def stack_of(text: str) -> Stack | Row | Aircraft:
-    """Return the stack, row or aircraft of a file, or of standard input for ``-``.
+    """Return the stack, blade row or aircraft in a TOML file, or in standard input for ``-``.
 
     Raises InputError, with the place: not TOML; an unknown key; an invalid value; a section without a shape.
     """
@@ -25,7 +25,7 @@ def stack_of(text: str) -> Stack | Row | Aircraft:
 
 
 def read_stack(source: Source) -> Stack | Row | Aircraft:
-    """Return the stack, row or aircraft of a source (see `stack_of`)."""
+    """Return the stack, blade row or aircraft in a TOML source; errors as `stack_of`."""
     with in_source(source.name):
         data = toml_table(source)
         kind = data.word("kind", (*KINDS, "row", "aircraft"), "wing")

@@ -17,9 +17,9 @@ _STEEPEST = 85.0  # largest sweep and dihedral in degrees; at 90 the next sectio
 
 
 def stack_table(data: Table, folder: Path, name: str, more: tuple[str, ...] = ()) -> Stack:
-    """Return the stack that a table describes; paths are relative to `folder`, keys `more` also allowed.
+    """Return the stack of sections that a table describes; `more` lists keys that are permitted in addition.
 
-    Raises InputError: see `meshonet.formats.stack.stack_of`.
+    Paths are relative to `folder`. Raises InputError as `meshonet.formats.stack.stack_of`.
     """
     options = stack_options(data, name, ("about", "cant", *more))
     about, turn = data.pair("about", QUARTER), cant(data, 0.0)
@@ -30,9 +30,9 @@ def stack_table(data: Table, folder: Path, name: str, more: tuple[str, ...] = ()
 
 
 def stack_options(data: Table, name: str, more: tuple[str, ...]) -> dict[str, Any]:
-    """Return the arguments of `Stack` in a table, without sections; keys `more` are also allowed.
+    """Return the arguments of `Stack`, except the sections, from a table; `more` lists additional keys.
 
-    Raises InputError: another key; an unknown word; a value that is not a number.
+    Raises InputError if a key or a word is unknown, or if a value is not a number.
     """
     data.only("kind", "tip", "between", *_SPACINGS, "name", "sections", *more)
     words = (("kind", KINDS, "wing"), ("tip", TIPS, "round"), ("between", BETWEEN, "linear"))
@@ -54,7 +54,7 @@ def _nodes(row: Table) -> int | None:
 
 
 def cant(data: Table, default: Cant) -> Cant:
-    """Return the cant (angle about x) in a table, degrees or ``panel``. Raises InputError: another value."""
+    """Return the cant (angle about x) in degrees, or ``panel``. Raises InputError: another value."""
     if "cant" not in data.data or data.data["cant"] == "panel":
         return "panel" if "cant" in data.data else default
     degrees = data.number("cant")
@@ -87,11 +87,12 @@ def _section(
 
 
 def along(row: Table, direct: str, angle: str, z: float, before: list[Section]) -> float:
-    """Return x or y of the section in `row` at this `z`, after the sections `before`.
+    """Return x or y of the section in the table `row`, which is at `z` after the sections `before`.
 
-    The key `direct` (``x`` or ``y``) gives the value, by default that of the previous section. Or the key
-    `angle` (``sweep`` or ``dihedral``) gives the angle, in degrees, between the z axis and the line from the
-    previous section. Raises InputError: both keys; an angle of the first section, or above 85 degrees.
+    The key `direct` (``x`` or ``y``) gives the value; its default is that of the previous section. Instead,
+    the key `angle` (``sweep`` or ``dihedral``) may give the angle in degrees between the z axis and the line
+    from the previous section. Raises InputError: both keys; an angle of the first section, or above 85
+    degrees.
     """
     if angle not in row.data:
         return row.number(direct, getattr(before[-1], direct) if before else 0.0)
@@ -106,9 +107,9 @@ def along(row: Table, direct: str, angle: str, z: float, before: list[Section]) 
 
 
 def section_shape(row: Table, folder: Path) -> Airfoil | Outline:
-    """Return the shape in the table of a section; paths are relative to `folder`.
+    """Return the shape of a section from its table; paths are relative to `folder`.
 
-    Raises InputError: not exactly one of the keys; a file without one airfoil or closed curve.
+    Raises InputError unless the table has either `airfoil` or `outline`, and its file one such shape.
     """
     keys = [key for key in ("airfoil", "outline") if key in row.data]
     remedy = "name one file, or a designation such as naca:2412"

@@ -31,7 +31,7 @@ _CUT = "the file is cut short: write it again"  # remedy for a truncated file
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the only grid of `grids`; markers have the names of patches."""
+    """Write the only grid of `grids` as SU2; its markers have the names of patches."""
     grid = only_one(grids, "a .su2 file")
     refuse_collapsed(grid, "a .su2 file")
     mesh = unstructured(grid)
@@ -75,9 +75,9 @@ def _write_cells(stream: BinaryIO, nodes: Indices) -> None:
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:
-    """Yield the shapes that the markers of a mesh enclose.
+    """Yield the shapes that the markers of an SU2 mesh enclose.
 
-    Raises InputError: not an SU2 mesh; three dimensions; markers that are not closed curves.
+    Raises InputError if it is no SU2 mesh or not planar, or if markers are not closed curves.
     """
     yield from shapes_of(_Reader(source.read_bytes().split(b"\n")).surface(), source.stem)
 

@@ -26,12 +26,12 @@ _MESHIO = {
 
 
 def holds(marks: tuple[bytes, ...], head: bytes) -> bool:
-    """Return whether `head`, the start of a file, contains all `marks`."""
+    """Return whether `head`, the first bytes of a file, contains all texts in `marks`."""
     return all(mark in head[:4096] for mark in marks)
 
 
 def begins(pattern: bytes, head: bytes) -> bool:
-    """Return whether `head`, the start of a file, matches a regular expression."""
+    """Return whether `head`, the first bytes of a file, matches the regular expression `pattern`."""
     return re.match(pattern, head, re.DOTALL | re.IGNORECASE) is not None
 
 
@@ -50,7 +50,7 @@ def _write(write: Any, name: str, path: Path, grids: Iterable[Grid], *rest: Any,
 
 
 def check_space(record: Format, kind: Space, output: str = "") -> None:
-    """Raise InputError if a format cannot store a `kind` of blocks in space in the file `output`."""
+    """Raise InputError if a format cannot store this `kind` of 3-D blocks; `output` names the file."""
     if kind not in record.space:
         able = ", ".join(other.name for other in _FORMATS if kind in other.space and other.write_grids)
         held = " and ".join(("grids in the plane", *record.space))

@@ -16,18 +16,18 @@ _SHOWN = 40  # number of characters of a value that an error message shows
 
 @dataclass(frozen=True)
 class Table:
-    """A table and its place, such as ``sections[1]``; InputError names the key of an invalid value."""
+    """A table of a TOML file and its place, such as ``sections[1]``; unsuitable values raise InputError."""
 
     data: dict[str, Any]
     place: str = ""
 
     def error(self, key: str, problem: str, remedy: str) -> InputError:
-        """Return the error for a key of this table."""
+        """Return an error that names a key of this table."""
         return InputError(problem, remedy, place=self._at(key))
 
     @contextmanager
     def located(self) -> Iterator[None]:
-        """Within the ``with`` block, prepend the place of this table to places in errors that lack it."""
+        """Return a context in which errors get the place of this table in front of their own place."""
         try:
             yield
         except InputError as error:
@@ -38,7 +38,7 @@ class Table:
 
     @contextmanager
     def in_file_of(self, key: str) -> Iterator[None]:
-        """Within the ``with`` block, add to errors the `key` whose value is the file that is read."""
+        """Return a context in which errors in reading the file that is the value of `key` name this key."""
         try:
             yield
         except InputError as error:
@@ -46,13 +46,13 @@ class Table:
             raise self.error(key, where, error.remedy) from None
 
     def only(self, *keys: str) -> None:
-        """Raise InputError for a key that is not one of `keys`."""
+        """Raise InputError if the table has a key that is not one of `keys`."""
         for key in self.data:
             if key not in keys:
                 raise self.error(printable(key), "is not known", "use " + ", ".join(keys))
 
     def rows(self, key: str, least: int = 1) -> "list[Table]":
-        """Return an array of at least `least` tables."""
+        """Return a list of at least `least` tables."""
         rows = self.data.get(key)
         if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows) or len(rows) < least:
             many = "one or more" if least == 1 else f"{least} or more"
@@ -64,7 +64,7 @@ class Table:
         return f"{self.place}.{key}" if self.place else key
 
     def number(self, key: str, default: float | None = None) -> float:
-        """Return a finite number, or `default` if the key is missing."""
+        """Return a finite number; the default applies if the key is missing."""
         if key not in self.data and default is not None:
             return default
         return self._number(key, self.data.get(key))
@@ -79,7 +79,7 @@ class Table:
         return value
 
     def text(self, key: str, default: str | None = None) -> str:
-        """Return a text that is not empty."""
+        """Return a non-empty text; the default applies if the key is missing."""
         value = self.data.get(key, default)
         if not isinstance(value, str) or not value:
             problem = "is missing" if value is None else f"{_shown(value)} is no text"
@@ -87,14 +87,14 @@ class Table:
         return value
 
     def flag(self, key: str, *, default: bool) -> bool:
-        """Return true or false, or `default` if the key is missing."""
+        """Return true or false; the default applies if the key is missing."""
         value = self.data.get(key, default)
         if not isinstance(value, bool):
             raise self.error(key, f"{_shown(value)} is neither true nor false", "write true or false")
         return value
 
     def word(self, key: str, known: tuple[str, ...], default: str) -> str:
-        """Return one of the `known` words."""
+        """Return one of the words in `known`; the default applies if the key is missing."""
         value = self.text(key, default)
         if value not in known:
             raise self.error(key, f"{_shown(value)} is not known", "use " + ", ".join(known))
@@ -103,14 +103,14 @@ class Table:
     def vector(
         self, key: str, default: tuple[float, float, float] | None = None
     ) -> tuple[float, float, float]:
-        """Return three finite numbers, or `default` if the key is missing."""
+        """Return three finite numbers; the default applies if the key is missing."""
         if key not in self.data and default is not None:
             return default
         x, y, z = self._numbers(key, 3)
         return x, y, z
 
     def pair(self, key: str, default: tuple[float, float]) -> tuple[float, float]:
-        """Return two finite numbers; a single number stands for itself and 0."""
+        """Return two finite numbers; the value may be a single number, and the second is then 0."""
         if key not in self.data:
             return default
         if not isinstance(self.data[key], list):
@@ -119,7 +119,7 @@ class Table:
         return x, y
 
     def pairs(self, key: str, least: int, columns: str = "x, r") -> list[list[float]]:
-        """Return at least `least` pairs of numbers, called `columns` in messages."""
+        """Return a list of at least `least` pairs of numbers; messages call them `columns`."""
         rows = self.data.get(key)
         if not isinstance(rows, list) or len(rows) < least:
             raise self.error(
@@ -145,7 +145,7 @@ class Table:
 
 
 def toml_table(source: Source) -> Table:
-    """Return the top-level table of a source. Raises InputError, with the place: it is not TOML."""
+    """Return the top-level table of a TOML source. Raises InputError, with the place, if it is not TOML."""
     try:
         return Table(tomllib.loads(source.text_bytes().decode("utf-8")))
     except (ValueError, RecursionError) as error:  # also integers of more digits than Python reads

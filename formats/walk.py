@@ -33,10 +33,10 @@ def _readable_suffixes(*, grids_only: bool = False) -> frozenset[str]:
 
 
 class Walk:
-    """One walk through inputs, which counts files found and files picked.
+    """One search for the files of inputs, which counts the files found and picked.
 
-    Left out are empty lines of lists and lines that begin with ``#``, names with a leading dot or ``__``, and
-    folders that belong to a file beside them, such as ``out/`` of ``out.h5``.
+    In lists, empty lines and lines that begin with ``#`` are ignored. In folders, names that begin with a dot
+    or ``__`` are ignored, and so are folders that belong to a file, such as ``out/`` to ``out.h5``.
     """
 
     def __init__(self, inputs: Inputs) -> None:
@@ -46,7 +46,7 @@ class Walk:
         self._example = ""
 
     def files(self) -> Iterator[str | InputError]:
-        """Yield the files that the inputs stand for, or errors; the last says if none is picked."""
+        """Yield files, and errors for invalid inputs; the last error says that no file was picked."""
         yield from self._of(self._inputs.words)
         if self._patterns and not self._taken:
             pattern = " or ".join(map(printable, self._inputs.pick))

@@ -8,7 +8,7 @@ _NEW = 100_000  # objects, twice those of modules, after which cycles are search
 
 
 def main() -> NoReturn:
-    """Run the command line; an interrupt while modules load ends it without a traceback."""
+    """Run the command line; an interrupt ends it without a traceback, even while modules are loaded."""
     gc.set_threshold(_NEW)
     try:
         from meshonet_cli.app import main as run

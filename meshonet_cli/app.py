@@ -50,16 +50,16 @@ def options(
 
 
 class Plain(typer.core.TyperCommand):
-    """A command with ``GRID...`` in its usage line, instead of typer's ``{GRID}``, and with option groups."""
+    """A command whose usage line has ``GRID...``, not typer's ``{GRID}``, and whose options are in groups."""
 
     def collect_usage_pieces(self, ctx: Any) -> list[str]:
-        """Return the words of the usage line; all our arguments may be repeated."""
+        """Return the words of the usage line; each argument is followed by dots, since it may be repeated."""
         pieces = super().collect_usage_pieces(ctx)
         words = [piece.strip("{}") for piece in pieces]
         return [word if word == "[OPTIONS]" or "..." in word else f"{word}..." for word in words]
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
-        """Write the arguments, then the options by group."""
+        """Write the help of the arguments, then that of the options by group."""
         from meshonet_cli.options.groups import GROUPS, IO  # which a list of all commands does not need
 
         groups: dict[str, list[tuple[str, str]]] = {"Arguments": [], **{group: [] for group in GROUPS}}
@@ -76,9 +76,9 @@ class Plain(typer.core.TyperCommand):
 
 
 def application(commands: Sequence[Command] = COMMANDS, *, overview: bool = False) -> Any:
-    """Return the parser of `commands`, or of a single command.
+    """Return the parser of `commands`.
 
-    With `overview`, commands have only names and summaries; without it, loading their options takes 0.1 s.
+    With `overview`, the options of the commands are not loaded, which would take 0.1 s.
     """
     app = typer.Typer(
         add_completion=len(commands) > 1,

@@ -25,13 +25,13 @@ MOST_LABELS = 2**31 - 1  # largest label, and largest total number of nodes of a
 
 
 class Faces(NamedTuple):
-    """Faces of cells.
+    """Faces of cells: first the interior faces, then the boundary faces.
 
     Parameters
     ----------
     nodes : (f, 4) point numbers; the normal points out of the owner. Consecutive numbers may be equal.
-    owner : (f,) cell of each face; of two cells the one with the lower number.
-    neighbour : (g,) other cells of the g interior faces, which come first.
+    owner : (f,) cell of each face; at interior faces the one of the two cells with the lower number.
+    neighbour : (g,) the other cell of each of the g interior faces.
     """
 
     nodes: Labels
@@ -40,9 +40,9 @@ class Faces(NamedTuple):
 
 
 def all_faces(grid: Grid, numbers: Sequence[Indices], parts: Mapping[str, NamedFaces]) -> Faces:
-    """Return the faces of a volume grid with node `numbers`; outer faces are those of `parts`.
+    """Return the faces of a volume grid with these node `numbers`; `parts` has its boundary faces.
 
-    Raises InputError: too many labels for 32 bits; a cell that is its own neighbour.
+    Raises InputError if there are too many faces for labels of 32 bits, or if a cell is its own neighbour.
     """
     cells = cell_numbers([block.counts for block in grid.blocks])
     count = sum(each.size for each in cells)
@@ -69,13 +69,13 @@ def all_faces(grid: Grid, numbers: Sequence[Indices], parts: Mapping[str, NamedF
 
 
 def whole(nodes: NDArray[np.integer[Any]]) -> Bools:
-    """Return a mask (f,) of faces (f, 4) with an area: three different nodes, and different diagonals."""
+    """Return a mask (f,) of the faces (f, 4) that are not degenerate to an edge or a point."""
     several = (nodes != np.roll(nodes, -1, axis=1)).sum(axis=1) >= _LEAST
     return np.asarray(several & (nodes[:, 0] != nodes[:, 2]) & (nodes[:, 1] != nodes[:, 3]))
 
 
 def without_collapsed(faces: Faces, parts: Mapping[str, NamedFaces]) -> tuple[Faces, dict[str, NamedFaces]]:
-    """Return faces and parts without degenerate faces; parts that become empty are left out."""
+    """Return faces and boundary parts without degenerate faces; parts that become empty are left out."""
     keep, inner = whole(faces.nodes), len(faces.neighbour)
     kept = {name: (part, whole(part.faces)) for name, part in parts.items()}
     left = Faces(faces.nodes[keep], faces.owner[keep], faces.neighbour[keep[:inner]])

@@ -22,7 +22,7 @@ _ARCH = '    arch        "LSB;label=32;scalar=64";\n'  # header entry with the n
 def head(
     kind: str, name: str, note: str = "", place: str = "constant/polyMesh", *, binary: bool = False
 ) -> str:
-    """Return the header of a file with the class `kind`."""
+    """Return the header of an OpenFOAM file; `kind` is its class, `name` its object, `place` its location."""
     remark = f'    note        "{note}";\n' if note else ""
     form = f"binary;\n{_ARCH}" if binary else "ascii;\n"
     return (
@@ -32,7 +32,7 @@ def head(
 
 
 def write_mesh(folder: Path, points: Floats, faces: Faces, *, binary: bool) -> None:
-    """Write the lists of points, faces, owners and neighbours."""
+    """Write the mesh files ``points``, ``faces``, ``owner`` and ``neighbour`` into `folder`."""
     note = (
         f"nPoints: {len(points)} nCells: {int(faces.owner.max()) + 1} "
         f"nFaces: {len(faces.nodes)} nInternalFaces: {len(faces.neighbour)}"
@@ -47,7 +47,7 @@ def write_mesh(folder: Path, points: Floats, faces: Faces, *, binary: bool) -> N
 
 
 def write_zone(path: Path, name: str, cells: int, *, binary: bool) -> None:
-    """Write a list of cell zones with a single zone, which contains all `cells` cells."""
+    """Write a file of cell zones with a single zone, `name`, which contains all `cells` cells."""
     with path.open("wb") as stream:
         stream.write(head("regIOobject", path.name, binary=binary).encode("ascii"))
         entries = "    type            cellZone;\n    cellLabels      List<label>"

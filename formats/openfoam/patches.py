@@ -24,7 +24,7 @@ _FLAT = 1e-15  # largest squared difference of unit normals in a symmetry plane 
 
 
 class CasePatch(NamedTuple):
-    """A patch: consecutive faces in the list of faces; `more` are additional entries of its dictionary."""
+    """A patch: name, type, number of faces, and `more` entries of its dictionary."""
 
     name: str
     kind: str
@@ -33,9 +33,9 @@ class CasePatch(NamedTuple):
 
 
 def with_empty_planes(grid: Grid, parts: Mapping[str, NamedFaces]) -> dict[str, NamedFaces]:
-    """Return `parts`; bottoms and tops of a planar grid become a last part, `PLANES`.
+    """Return the boundary `parts`; bottom and top of a planar grid become one part, `PLANES`, at the end.
 
-    A volume counts as planar if all blocks are one cell thick between symmetry planes.
+    A volume counts as planar if all its blocks are one cell thick between symmetry planes.
     """
     outer = grid.outer_patches()
     ends = {patch.name for patch in outer if patch.side in ("bottom", "top")}
@@ -56,7 +56,7 @@ def patches_of(
     grid: Grid, parts: Mapping[str, NamedFaces], pairs: Sequence[PeriodicPair], points: Floats,
     periodic: str = "cyclic",
 ) -> list[CasePatch]:  # fmt: skip
-    """Return name, type and additional entries of the patch of each part.
+    """Return the patch of each boundary part, with its type and additional entries.
 
     `periodic` is the type of periodic patches: ``cyclic``, or ``cyclicAMI``, which interpolates.
     """
@@ -77,7 +77,7 @@ def patches_of(
 
 
 def write_boundary(path: Path, patches: Sequence[CasePatch], start: int) -> None:
-    """Write names, types and face counts of the patches, whose faces start at number `start`."""
+    """Write the file ``boundary`` with all patches; the faces of the first one start at number `start`."""
     text = f"{head('polyBoundaryMesh', 'boundary')}{len(patches)}\n(\n"
     for patch in patches:
         entries = "".join(f"        {entry}\n" for entry in patch.more)

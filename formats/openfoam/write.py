@@ -34,11 +34,11 @@ _ZONE = "passage"  # name of the zone of a grid without one
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write the only grid of `grids` into the folder of `path`; `path` itself becomes empty.
+    """Write the only grid of `grids` into the folder of `path`; the file at `path` is left empty.
 
     The two planes of a planar grid, or of one layer between symmetry planes, are a patch of type ``empty``.
-    Cells at collapsed sides are prisms or pyramids. With a rotation between periodic sides, all cells form a
-    zone with the name of the grid, for a rotating frame. Missing dictionaries in ``system`` are added.
+    Cells at collapsed sides become prisms or pyramids. If periodic sides are related by a rotation, all cells
+    form a zone with the name of the grid, for a rotating frame. Missing dictionaries in ``system`` are added.
     """
     grid = only_one(grids, "a case")
     low, high = grid.box

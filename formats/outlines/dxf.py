@@ -21,10 +21,10 @@ _KINDS = {"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE"
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:
-    """Yield the shapes that the curves of a drawing enclose; other entities are left out, with a note.
+    """Yield the shapes that the curves of a DXF drawing enclose; other entities are left out, with a note.
 
-    Raises InputError: ezdxf is not installed; the file is too large, binary, or no drawing; no curves; curves
-    that are not closed, cross, or lie inside a hole; a coordinate that is not finite.
+    Raises InputError if ezdxf is not installed, if the file is too large, binary or no drawing, if
+    coordinates are not finite, or if curves are missing, not closed, crossing or inside a hole.
     """
     try:
         from ezdxf import path

@@ -18,7 +18,7 @@ MEET = 1e-6  # largest distance of two ends that are joined, relative to the ext
 
 
 def shapes_of_drawing(lines: list[tuple[str, Floats]], skipped: Iterable[str], name: str) -> Iterator[Shape]:
-    """Yield the shapes of named curves (n, 2), with a note on the `skipped` kinds of elements."""
+    """Yield the shapes that named curves (n, 2) enclose, with a note on the `skipped` kinds of elements."""
     counts = Counter(skipped)
     listed = ", ".join(f"{count} {printable(kind)}" for kind, count in sorted(counts.items()))
     notes = (f"of the drawing, elements that are no curves are left out: {listed}",) if counts else ()
@@ -26,7 +26,7 @@ def shapes_of_drawing(lines: list[tuple[str, Floats]], skipped: Iterable[str], n
 
 
 def extent_checked(points: Floats) -> float:
-    """Return the extent of points (n, 2). Raises InputError: it is zero or not finite."""
+    """Return the extent of points (n, 2). Raises InputError if it is zero or not finite."""
     extent = extent_of(points)
     if not (np.abs(points) < LARGEST).all() or extent == 0:
         raise InputError("its curves have no size, or one that is not finite", "check the drawing")
@@ -34,7 +34,7 @@ def extent_checked(points: Floats) -> float:
 
 
 def joined(lines: list[tuple[str, Floats]]) -> MeshBoundary:
-    """Return curves (n, 2) as edges of numbered points, equal ends being one. Raises InputError: too many."""
+    """Return curves (n, 2) as a mesh boundary, in which coincident ends are one point; error: too large."""
     lines = [(name, line[np.append(True, (np.diff(line, axis=0) != 0).any(axis=1))]) for name, line in lines]
     lines = [(name, line) for name, line in lines if len(line) > 1]
     if sum(len(line) for _, line in lines) > MOST_EDGES:

@@ -127,10 +127,10 @@ def _arc(a: Floats, b: Floats, rx: float, ry: float, degrees: float, large: bool
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:
-    """Yield the shapes that the curves of a drawing enclose, approximated by chords.
+    """Yield the shapes that the curves of an SVG drawing enclose; curves are approximated by chords.
 
-    Text, images and ``use`` elements are left out, with a note; clipping and visibility are ignored.
-    Raises InputError: not an SVG drawing; curves that are not closed.
+    Text, images and ``use`` elements are left out, with a note. Clipping and visibility are ignored. Raises
+    InputError if it is no SVG drawing, or if curves are not closed.
     """
     from xml.etree.ElementTree import ParseError, fromstring
 

@@ -39,9 +39,9 @@ class _Geometry:
 
 
 def read_wkt(source: Source) -> Iterator[Shape]:
-    """Yield the shapes of a WKT file, one geometry per file or line, named by a line ``# name`` above.
+    """Yield the shapes of a WKT file, a geometry in each line; a line ``# name`` before it is its name.
 
-    Raises InputError, with the line: not WKT; a geometry that is not an outline.
+    Raises InputError, with the line, if it is not WKT, or if a geometry is no outline.
     """
     geometries = _geometries(_text(source))
     drawn = [_Geometry(source.stem, place, each, {"name": called}) for place, each, called in geometries]
@@ -49,7 +49,7 @@ def read_wkt(source: Source) -> Iterator[Shape]:
 
 
 def read_geojson(source: Source) -> Iterator[Shape]:
-    """Yield the shapes of a GeoJSON file, named by the property ``name`` of their features.
+    """Yield the shapes of a GeoJSON file; the property ``name`` of a feature is the name of its shape.
 
     Raises InputError, with the feature: not GeoJSON; no outline; properties that do not match the rings.
     """

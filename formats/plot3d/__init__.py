@@ -33,7 +33,7 @@ _INTEGER_FIRST = re.compile(rb"\s*\d+(?:\*\d+)?[\s,]")  # first word: an integer
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether `head` starts with node counts of a Plot3D grid, which fit its length if it is whole."""
+    """Return whether the first bytes of a file, `head`, are those of a Plot3D grid."""
     textual = is_text(head)
     if textual and not _INTEGER_FIRST.match(head):
         return False
@@ -52,5 +52,5 @@ def sniff(head: bytes) -> bool:
 
 
 def is_text(head: bytes) -> bool:
-    """Return whether `head` is text; binary integers below 2^24 always have a zero byte."""
+    """Return whether the first bytes of a file, `head`, are text."""
     return b"\0" not in head[:64]

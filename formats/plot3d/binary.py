@@ -17,10 +17,10 @@ _ORDERS = {"<": "little", ">": "big"}  # names of byte orders
 
 
 def candidates(data: memoryview, wanted: Options = frozenset()) -> list[Candidate]:
-    """Return all file layouts (`Candidate`) whose length is that of the file.
+    """Return all possible layouts of a binary file whose length is that of `data`.
 
-    Arrays plane by plane are included if `wanted`, or if each Fortran record has one plane.
-    Raises InputError: no layout fits.
+    Coordinates plane by plane are considered if `wanted`, or if each Fortran record has one plane. Raises
+    InputError if no layout fits.
     """
     fitting: list[Candidate] = []
     tried: list[tuple[int, str]] = []

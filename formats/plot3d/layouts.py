@@ -31,7 +31,7 @@ MOST_INTEGERS = 1 + 3 * _MOST_BLOCKS  # number of integers in the longest header
 
 @dataclass(frozen=True)
 class FileLayout:
-    """A layout: whether there is a block count, 2 or 3 axes, whether there is iblank, and node counts."""
+    """A layout: whether there is a block count, 2 or 3 axes, whether there is iblank, node counts."""
 
     counted: bool
     axes: int
@@ -40,23 +40,23 @@ class FileLayout:
 
     @property
     def header(self) -> int:
-        """Number of integers before the first coordinate."""
+        """Number of integers before the coordinates of the first block."""
         return int(self.counted) + self.axes * len(self.dims)
 
     def starts(self, real: int = 1, integer: int = 1) -> list[int]:
-        """Return the first byte of each block, and the end; numbers take `real` and `integer` bytes."""
+        """Return where each block and the end begin; numbers take `real` or `integer` bytes."""
         node = self.axes * real + integer * int(self.iblank)
         return list(
             itertools.accumulate((node * prod(dims) for dims in self.dims), initial=integer * self.header)
         )
 
     def length(self, real: int = 1, integer: int = 1) -> int:
-        """Return the length of the file if its numbers take `real` and `integer` bytes."""
+        """Return the length of the file, if a coordinate takes `real` and an integer `integer` bytes."""
         return self.starts(real, integer)[-1]
 
 
 def layouts(integer: Header) -> Iterator[FileLayout]:
-    """Yield the layouts with a plausible header: block count, node counts from 1."""
+    """Yield the layouts for which the first integers of the file are a plausible header."""
     for counted, axes in itertools.product((True, False), (3, 2)):
         blocks = integer(0) if counted else 1
         if blocks is None or not 1 <= blocks <= _MOST_BLOCKS:
@@ -80,11 +80,11 @@ def _dims(integer: Header, blocks: int, axes: int, start: int) -> tuple[Dims, ..
 
 @dataclass(frozen=True)
 class Candidate:
-    """A layout whose length is that of the file, with the numbers of the file.
+    """A layout that fits the length of a file, and the content of the file.
 
     Parameters
     ----------
-    stream : all numbers of the file.
+    stream : content of the file.
     real, integer : number types of coordinates, and of node counts and iblank.
     planes : whether the arrays of a block are stored plane by plane.
     numbers, kind : number type and byte order, for messages and as options of the format.
@@ -100,13 +100,13 @@ class Candidate:
 
     @property
     def traits(self) -> frozenset[str]:
-        """The options of the format that describe it."""
+        """The Plot3D options that describe this layout."""
         count = "multi" if self.layout.counted else "single"
         iblank = "iblank" if self.layout.iblank else "no-iblank"
         return self.kind | {count, f"{self.layout.axes}d", iblank, "planes" if self.planes else "whole"}
 
     def arrays(self, block: int) -> list[NDArray[Any]]:
-        """Return the coordinates of a block as flat arrays, views of a block stored whole."""
+        """Return the coordinates of a block as flat arrays, without copying if it is stored whole."""
         axes = self.layout.axes
         rows = [self._numbers(at, axes * n, self.real).reshape(axes, -1) for at, n in self._planes(block)]
         return list(rows[0] if len(rows) == 1 else np.concatenate(rows, axis=1))
@@ -133,11 +133,11 @@ class Candidate:
 
     @property
     def blocks(self) -> range:
-        """Indices of its blocks."""
+        """Indices of the blocks."""
         return range(len(self.layout.dims))
 
     def iblank(self, block: int) -> dict[str, int]:
-        """Return the number of nodes of a block with each iblank value; empty without an iblank array."""
+        """Return the number of nodes of a block with each iblank value; empty if the file has no iblank."""
         if not self.layout.iblank:
             return {}
         values, counts = _tallied(self.flags(block))
@@ -147,19 +147,19 @@ class Candidate:
         return {f"{value:.0f}": int(count) for value, count in zip(values, counts, strict=True)}
 
     def size(self, block: int) -> tuple[int, int, int]:
-        """Return the node counts of a block along all three indices."""
+        """Return the node counts of a block along three indices; the third is 1 in a planar block."""
         ni, nj, nk = (*self.layout.dims[block], 1)[:3]
         return ni, nj, nk
 
     def coordinates(self, block: int) -> list[NDArray[Any]]:
-        """Return x, y[, z] of a block, (ni, nj, nk) each."""
+        """Return the coordinates x, y[, z] of a block, an array (ni, nj, nk) each."""
         return [values.reshape(self.size(block), order="F") for values in self.arrays(block)]
 
     def regularity(self) -> float:
-        """Return the fraction of cells with the prevailing orientation; negative for impossible values.
+        """Return the fraction of cells with the prevailing orientation; it is negative for impossible values.
 
-        Wrong layouts have random orientations. Planar layouts are preferred, since iblank of a planar grid
-        can look like z. Only the first nodes along each index are used.
+        Wrong layouts have random orientations. The value is reduced for a surface, since iblank of a planar
+        grid can look like z. Only the first nodes along each index are examined.
         """
         for block in self.blocks:
             if not all(_sane(values) for values in self.arrays(block)):
@@ -176,7 +176,7 @@ class Candidate:
 
 
 def best(candidates: list[Candidate]) -> Candidate:
-    """Return the most regular candidate; if several are equal, the first of them."""
+    """Return the candidate of greatest regularity; if several are equal, the first of them."""
     return candidates[0] if len(candidates) == 1 else max(candidates, key=Candidate.regularity)
 
 
@@ -203,9 +203,9 @@ def _tallied(flags: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
 
 
 def regular_cells(nodes: Floats) -> tuple[int, int]:
-    """Return the number of cells with the prevailing orientation, and of all cells.
+    """Return the number of cells with the prevailing orientation (sign of area or volume), and of all cells.
 
-    Orientation is the sign of area or volume; on surfaces, the sign of the product of neighbouring normals.
+    On surfaces, pairs of neighbouring normals with a positive scalar product are counted instead.
     """
     if nodes.shape[2:] == (3,):
         normal = np.cross(*_diagonals(nodes))

@@ -30,12 +30,12 @@ _RULE = "# " + "=" * 78
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the map of the only grid of `grids`."""
+    """Write the neutral map file (patches and connections) of the only grid of `grids`."""
     write_map(path, [only_one(grids, "a .nmf file")])
 
 
 def write_map(path: Path, grids: Sequence[Grid], span: int = 2) -> None:
-    """Write the neutral map of all blocks; the third index in the file is index `span` (0 to 2) of a grid."""
+    """Write the neutral map of all blocks; direction k of a grid is index `span` (0 to 2) in the file."""
     dims: list[list[int]] = []
     rows: list[str] = []
     for grid in grids:
@@ -110,14 +110,14 @@ _REMEDY = "write the map again, or take it away"  # remedy for a map that does n
 
 
 class Map(NamedTuple):
-    """Content of a map: named faces, and connected pairs."""
+    """Content of a neutral map: named faces, and pairs of connected faces."""
 
     faces: list[Face]
     pairs: list[Pair]
 
 
 def read_map(path: Path, dims: Sequence[tuple[int, int, int]]) -> Map:
-    """Return the map of blocks with node counts `dims`. Raises InputError: unreadable; other blocks."""
+    """Return the neutral map of blocks with node counts `dims`. Raises InputError: it does not fit."""
     name = printable(path.name)
     try:
         if path.stat().st_size > _MOST_BYTES:

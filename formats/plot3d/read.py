@@ -15,9 +15,9 @@ _WRITTEN_ONLY = {"span-i", "span-j", "span-k"}  # options that only apply to wri
 
 
 def read_grids(source: Source, *, options: Options = frozenset()) -> Iterator[Grid]:
-    """Yield the grids of the blocks (`grids_of_file`) in any layout that fits the `options`.
+    """Yield the grids of a Plot3D file (`grids_of_file`), in the layout that suits its content and `options`.
 
-    Connections and boundary conditions are those of a neutral map file beside, else found by position.
+    Connections and boundary conditions come from a neutral map file next to it, or else from node positions.
     Provenance has the counts of iblank values. Raises InputError: no layout fits; a block without cells.
     """
     wanted = options - _WRITTEN_ONLY

@@ -10,7 +10,7 @@ _LONGEST_HEADER = 1 << 21  # largest first record in bytes, which has the node c
 
 
 class Stream:
-    """The bytes of a file without the lengths of records, accessed without copying."""
+    """Content of a file, without the length marks of Fortran records; it is accessed without copying."""
 
     def __init__(self, pieces: Sequence[memoryview], records: int = 0) -> None:
         self._pieces, self.records = pieces, records
@@ -20,7 +20,7 @@ class Stream:
         return self._starts[-1]
 
     def take(self, start: int, count: int) -> memoryview:
-        """Return `count` bytes from `start`; they are copied only if they span several records."""
+        """Return `count` bytes from position `start`; they are copied only if they span several records."""
         k = bisect_right(self._starts, start) - 1
         at = start - self._starts[k]
         if at + count <= len(self._pieces[k]) or not count:
@@ -33,10 +33,10 @@ class Stream:
 
 
 def unframed(data: memoryview, order: str) -> Stream | None:
-    """Return the content of a Fortran file's records, or None if it has no such records.
+    """Return the content of the Fortran records of a file; None if it does not consist of such records.
 
-    The length of a record stands before and after it. gfortran splits records above 2 GiB, and marks the
-    parts by negative lengths.
+    The length of a record stands before and after it; `order` is its byte order. gfortran splits records
+    above 2 GiB and marks the pieces by negative lengths.
     """
     pieces: list[memoryview] = []
     records, more, end = 0, False, 0
@@ -49,7 +49,7 @@ def unframed(data: memoryview, order: str) -> Stream | None:
 
 
 def broken_record(data: memoryview, order: str) -> str:
-    """Return a description of the first incomplete record; empty if the first has no plausible length."""
+    """Return a text about the first incomplete Fortran record; empty if the file does not start with one."""
     for count, (at, length, _, whole) in enumerate(_records(data, order), start=1):
         if count == 1 and (length % 4 or not 0 < length <= _LONGEST_HEADER or not whole):
             return ""

@@ -20,9 +20,9 @@ _MOST_REPEATED = 4  # largest plausible number of values per byte of the file, w
 
 
 def candidates(data: bytes, wanted: Options = frozenset()) -> list[Candidate]:
-    """Return all layouts with as many numbers as the file, arrays plane by plane only if `wanted`.
+    """Return all layouts with as many numbers as the text file; plane by plane only if `wanted`.
 
-    Raises InputError: a word that is not a number; no layout fits.
+    Raises InputError if a word is not a number, or if no layout fits.
     """
     values = _numbers(data)
 

@@ -25,7 +25,7 @@ _LINE = 4  # number of values per line of text
 
 
 class StoredBlock:
-    """A block as stored in Plot3D: node counts, then x, y[, z], first index fastest."""
+    """A block as stored in Plot3D: node counts, then x, y[, z]; its first index varies fastest."""
 
     def __init__(self, nodes: Floats, options: Options, *, space: bool) -> None:
         self._coordinates = list(np.moveaxis(nodes, -1, 0))
@@ -38,7 +38,7 @@ class StoredBlock:
         self._span, self.dims = _span(options), tuple(dims)
 
     def arrays(self) -> Iterator[NDArray[Any]]:
-        """Yield the flat coordinates one at a time, without a second grid in memory."""
+        """Yield the coordinates as flat arrays, one at a time to save memory."""
         for values in self._coordinates:
             solid = values.ndim == 3
             yield first_fastest(np.moveaxis(values, 2, self._span) if solid else values, self._dtype)
@@ -52,11 +52,11 @@ class StoredBlock:
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write the blocks of `grids`, and a neutral map unless they are several grids of one block.
+    """Write the blocks of `grids` as Plot3D, and a neutral map file unless there are several one-block grids.
 
-    Planar blocks get z = 0 only if other blocks have z. `options` select the index of a volume's third
-    direction. Raises InputError: no grid; several in a file without a count; a block too large for a Fortran
-    record; 2D for a grid in space.
+    Planar blocks get z = 0 if other blocks are in 3-D or the format needs it. `options` select the index of a
+    volume's third direction. Raises InputError if there is no grid, if several need a block count, if a block
+    is too large for a Fortran record, or if a grid in 3-D is to be written without z.
     """
     if "planes" in options:
         raise InputError("planes are read and not written", "leave the word out")
@@ -87,7 +87,7 @@ def _span(options: Options) -> int:
 
 
 def map_of(path: Path) -> Path | None:
-    """Return the path of the neutral map of the file at `path`; None for streams."""
+    """Return the path of the neutral map file that belongs to the file at `path`; None for a stream."""
     name = final_name(path)
     return None if name.endswith(PART_SUFFIX) else path.with_name(name).with_suffix(".nmf")
 

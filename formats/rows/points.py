@@ -23,16 +23,16 @@ _NAMES = {"x", "y", "z", "r", *_ANGLES}
 
 
 def point_blocks(source: Source, orders: Sequence[str]) -> list[Floats]:
-    """Return the blocks (n, k) of a file; k is the same in all.
+    """Return the blocks (n, k) of points in a file; all have the same number k of columns.
 
-    `orders` are permitted columns, ``x, y, z``, ``x, r, theta`` or ``x, r``, told apart by their number.
-    Raises InputError, with the place: other numbers or names of columns; no block; the heading of a splitter.
+    `orders` lists permitted columns, such as ``x, y, z`` or ``x, r``; k tells which of them apply. Raises
+    InputError, with the place: other columns; no block; a blade that is a splitter.
     """
     return [points for points, _ in placed_blocks(source, orders)]
 
 
 def placed_blocks(source: Source, orders: Sequence[str]) -> list[tuple[Floats, str]]:
-    """Return the blocks of `point_blocks`, each with its place: ``lines 2 to 9 of a.curve``."""
+    """Return the blocks as `point_blocks` does, each with its place: ``lines 2 to 9 of a.curve``."""
     with in_source(source.name):
         text = decode(source.text_bytes())
         lines = read_lines(_MARK.sub("", text))

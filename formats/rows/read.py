@@ -32,7 +32,7 @@ _PERCENT = re.compile(r"\s*([0-9.eE+-]+)\s*%\s*")
 
 
 def read_row(data: Table, source: Source) -> Row:
-    """Return the row in a table of TOML; paths are relative to the folder of `source`.
+    """Return the blade row in a table of a TOML file; paths are relative to the folder of `source`.
 
     Raises InputError, with the place: an unknown key; an invalid value; an unreadable file; see also `Row`.
     """

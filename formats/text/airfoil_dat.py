@@ -27,12 +27,12 @@ sniff = partial(mostly_rows, counts=(2,), least=4)  # whether most lines of byte
 
 
 def read_shapes(source: Source) -> Iterator[Airfoil]:
-    """Yield the airfoil of a file. Raises InputError, with the line: the file is not an airfoil."""
+    """Yield the airfoil in a file. Raises InputError, with the line, if the file contains no airfoil."""
     yield parse(decode(source.text_bytes()), source.name)
 
 
 def parse(text: str, source: str) -> Airfoil:
-    r"""Return the airfoil in a text; `source` is the file, whose name is the airfoil's default name.
+    r"""Return the airfoil in a text; without a name in the text, it is named after the file `source`.
 
     >>> parse("Plate\n1 0\n.5 .05\n0 0\n.5 -.05\n1 0\n", "plate.dat").name
     'Plate'

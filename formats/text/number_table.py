@@ -17,7 +17,7 @@ _ROWS = 1 << 13  # number of rows converted at a time, so that their text stays 
 def write_rows(stream: BinaryIO, form: str, rows: NDArray[Any]) -> None:
     r"""Write each row of `rows` (n, m) as a line of the format `form`.
 
-    The format has m fields: ``%d`` for integers, or ``%e`` for floats with 17 significant digits.
+    The format has m fields: ``%d`` for integers, or ``%e`` for floats, which get 17 significant digits.
 
     >>> from io import BytesIO
     >>> stream = BytesIO()
@@ -37,7 +37,7 @@ def write_rows(stream: BinaryIO, form: str, rows: NDArray[Any]) -> None:
 
 
 def parsed(text: bytes) -> Floats | None:
-    """Return the numbers of blank-separated `text`; None if there is anything else in it.
+    """Return the numbers in a text of numbers and blanks; None if it contains anything else.
 
     >>> parsed(b"1 2.5 -3e2").tolist(), parsed(b"1 two")
     ([1.0, 2.5, -300.0], None)
@@ -52,10 +52,10 @@ def parsed(text: bytes) -> Floats | None:
 
 
 def leading_numbers(text: bytes | mmap, most: int | None = None, start: int = 0) -> tuple[Floats, int]:
-    """Return at most `most` numbers of `text` from byte `start` on, and the position after them.
+    """Return at most `most` numbers of `text` from byte `start` on, and the position after the last of them.
 
-    Numbers are in Fortran's free format. Reading ends at a word that is no number, not finite, subnormal or
-    repeated (``3*1.0``).
+    The numbers are in Fortran's free format. Reading ends at a word that is no number, is not finite, is
+    subnormal or has a repeat count (``3*1.0``).
 
     >>> values, stop = leading_numbers(b"1 2.5, -3d2 0.4-101 end")
     >>> values.tolist(), stop

@@ -25,12 +25,12 @@ MOST_POINTS = 100_000  # largest number of points of a curve; more are taken for
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:
-    """Yield the shapes of a file. Raises InputError, with the line: the file contains no shape."""
+    """Yield the shapes in a file of points. Raises InputError, with the line, if there is none."""
     yield from parse(decode(source.text_bytes()), source.name, source.stem)
 
 
 def parse(text: str, source: str, stem: str = "") -> list[Shape]:
-    r"""Return the shapes in a list of points, with the name `stem`, or else `source`.
+    r"""Return the shapes in a list of points; they are named `stem`, or `source` if it is empty.
 
     >>> (square,) = parse("x,y\n0,0\n1,0\n1,1\n0,1\n", "square.csv")
     >>> square.name, square.topology
@@ -74,7 +74,7 @@ def parse(text: str, source: str, stem: str = "") -> list[Shape]:
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether `head` is text in which most lines are two or three numbers."""
+    """Return whether the first bytes of a file are text with two or three numbers in most lines."""
     return mostly_rows(head, (1, 2, 3), least=3)
 
 

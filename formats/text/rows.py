@@ -53,9 +53,9 @@ class Line(NamedTuple):
 
 
 def decode(data: bytes) -> str:
-    r"""Return the text of bytes: UTF-8, UTF-16 with a byte-order mark, or else Latin-1.
+    r"""Return bytes as text; they are UTF-8, UTF-16 with a byte-order mark, or else Latin-1.
 
-    Raises InputError: more than `MOST_BYTES`, or bytes that occur in no text.
+    Raises InputError if there are more than `MOST_BYTES`, or if bytes do not occur in texts.
 
     Examples
     --------
@@ -77,7 +77,7 @@ def decode(data: bytes) -> str:
 
 
 def read_lines(text: str) -> list[Line]:
-    r"""Return the lines of a text, each with its kind.
+    r"""Return the lines of a text, each with its kind (see `Line`).
 
     Examples
     --------
@@ -99,7 +99,7 @@ def _lines(text: str) -> tuple[Line, ...]:
 
 
 def mostly_rows(head: bytes, counts: tuple[int, ...], least: int) -> bool:
-    """Return whether `least` rows, and four fifths of all, have one of the `counts` of numbers."""
+    """Return whether `least` rows, and four fifths of all, have one of these `counts` of numbers."""
     try:
         lines = read_lines(decode(head))
     except InputError:
@@ -112,11 +112,11 @@ def mostly_rows(head: bytes, counts: tuple[int, ...], least: int) -> bool:
 
 
 def table(lines: list[Line]) -> list[list[Line]]:
-    """Return the rows of a text in blocks, which blank lines and prose separate.
+    """Return the rows (lines of numbers) of a text in blocks; blank lines and prose separate blocks.
 
-    A line of two numbers and words counts as a row if it is next to another row. `left_out` reports ignored
-    lines beside rows. Raises InputError: a damaged line before or after a row, without prose between; a
-    broken line between rows.
+    A line of two numbers followed by words counts as a row if it is next to a row. `left_out` reports ignored
+    lines. Raises InputError if a damaged line is before or after a row, without prose between them, or if a
+    broken line is between rows.
     """
     kinds: list[Kind] = ["blank", *map(attrgetter("kind"), lines), "blank"]
     blocks: list[list[Line]] = [[]]
@@ -143,7 +143,7 @@ def _next_kind(kinds: list[Kind], k: int, step: int) -> Kind:
 
 
 def left_out(lines: list[Line]) -> tuple[str, ...]:
-    """Return notes on ignored lines next to rows, and on HTML between rows."""
+    """Return notes on ignored lines: those next to rows, and HTML between rows."""
     kinds: list[Kind] = ["blank", *map(attrgetter("kind"), lines), "blank"]
     notes, first, last = [], 0, 0
     if "row" in kinds:

@@ -25,7 +25,7 @@ _MOST_SHRINKING = 1 << 15  # largest plausible compression ratio; of zeros, LZMA
 
 @dataclass(frozen=True)
 class Encoding:
-    """Encoding of the arrays of a file: byte order, headers and compression."""
+    """Encoding of the arrays of a VTK file: byte order, headers and compression."""
 
     order: str  # < or >
     header: str  # u4 or u8, the type of the length words before an array
@@ -37,7 +37,7 @@ class Encoding:
 
 @dataclass(frozen=True)
 class Encoded:
-    """One array of a file: its VTK type, its expected number of values (None: any), and its position."""
+    """An array of a VTK file: type, expected number of values (None: any number), and position."""
 
     kind: str
     count: int | None
@@ -47,9 +47,9 @@ class Encoded:
 
 
 def decode(array: Encoded, encoding: Encoding) -> NDArray[Any]:
-    """Return the values of `array` (count,), as a view of the file's bytes if possible.
+    """Return the values (count,) of an array of a VTK file, as a view of the file's bytes if possible.
 
-    Raises InputError: unknown type or form; another number of values; LZ4 compression.
+    Raises InputError if its type or form is unknown, its number of values is wrong, or it is LZ4-compressed.
     """
     if array.kind not in _KINDS:
         raise InputError(f"number type {array.kind[:40]!r} is not known", "write Float64 or Float32")

@@ -35,7 +35,7 @@ _WORD = re.compile(rb"\S")  # start of the next line that is not blank
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write the only grid of `grids`, which must have one block; text has 17 digits."""
+    """Write the only grid of `grids`, which must have one block, as legacy VTK."""
     grid, text = only_one(grids, "a .vtk file"), "ascii" in options
     ni, nj, nk = (*grid.blocks[0].counts, 1)[:3]
     with path.open("wb") as stream:
@@ -106,7 +106,7 @@ class _Cursor:
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
-    """Yield the grid of a legacy ``.vtk`` file. Raises InputError: not a STRUCTURED_GRID; a damaged file."""
+    """Yield the grid of a legacy VTK file. Raises InputError if it is no STRUCTURED_GRID or is damaged."""
     cursor = _Cursor(source.buffer())
     try:
         coordinates, facts = _read(cursor)

@@ -17,9 +17,9 @@ from meshonet.geometry.quality.metrics import metrics_of as metrics_of_cells
 
 
 def write_metrics(path: Path, grids: Iterable[Grid], *, many: bool = False) -> None:
-    """Write the only grid of `grids` to a ``.vts`` file, or with `many` to a ``.vtm`` file.
+    """Write the only grid of `grids` and its quality metrics as ``.vts``, or with `many` as ``.vtm``.
 
-    Raises InputError: a grid of several blocks for a ``.vts`` file.
+    Raises InputError if a grid with several blocks is to be written as ``.vts``.
     """
     if many:
         vtm.write_grids(path, grids, cell_data=metrics_of)
@@ -31,7 +31,7 @@ def write_metrics(path: Path, grids: Iterable[Grid], *, many: bool = False) -> N
 
 
 def metrics_of(grid: Grid) -> list[dict[str, NDArray[Any]]]:
-    """Return, for each block, the metrics of its cells (ni-1, nj-1[, nk-1]) and ``folded``, by name."""
+    """Return the cell arrays (ni-1, nj-1[, nk-1]) of each block by name: all metrics, and ``folded``."""
     every = {metric.name: per_cell_of_blocks(grid, metric.name) for metric in metrics_of_cells(grid)}
     of_blocks: list[dict[str, NDArray[Any]]] = []
     for number, block in enumerate(grid.blocks):

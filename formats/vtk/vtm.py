@@ -30,7 +30,7 @@ _OURS = re.compile(r"block-\d+\.vts")  # names of the files that this package wr
 
 
 def write_grids(path: Path, grids: Iterable[Grid], cell_data: CellData | None = None) -> None:
-    """Write grids, with optional cell data. Raises InputError: no grid; other files in the blocks' folder."""
+    """Write grids as ``.vtm``, with optional cell data. Raises InputError: no grid; a foreign folder."""
     folder = path.with_name(f"{Path(final_name(path)).stem}_blocks")
     if folder.is_dir() and not all(_OURS.fullmatch(entry.name) for entry in folder.iterdir()):
         shown = printable(str(folder.name))
@@ -67,9 +67,9 @@ _MOST_BYTES = 16 << 20  # largest index that is read; a larger one would list so
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
-    """Yield the grids in the ``.vts`` files of the index, in its folder or below.
+    """Yield the grids in the ``.vts`` files that a ``.vtm`` index lists; they must be in its folder or below.
 
-    Raises InputError: no such index; a file elsewhere, missing, or not ``.vts``.
+    Raises InputError if it is no such index, or if a file is elsewhere, missing or not ``.vts``.
     """
     if source.path is None:
         raise InputError("names files beside itself, and a stream has none", "give its path")

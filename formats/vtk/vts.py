@@ -42,7 +42,7 @@ def write(
     facts: Facts | None = None,
     block: int = 0,
 ) -> None:
-    """Write a block, with cell data (ni-1, nj-1[, nk-1]) by name, and `facts`, texts by name."""
+    """Write a block of `grid`, with cell data (ni-1, nj-1[, nk-1]) and metadata (`facts`) by name."""
     nodes = grid.blocks[block].nodes
     cells = dict(cell_data or {})
     for name, values in cells.items():
@@ -61,7 +61,7 @@ def write(
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the only grid of `grids`, which must have one block."""
+    """Write the only grid of `grids`, which must have one block, as ``.vts``."""
     write(path, only_one(grids, "a .vts file"))
 
 

@@ -25,16 +25,16 @@ _MOST_NODES = 1 << 40  # largest plausible number of nodes; their coordinates wo
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
-    """Yield the grid of a ``.vts`` file, planar or in space (`meshonet.formats.mesh.slices`).
+    """Yield the grid of a ``.vts`` file; `meshonet.formats.mesh.slices` decides whether it is planar.
 
-    Raises InputError: another format; a damaged file; LZ4 compression.
+    Raises InputError if the file has another format, is damaged, or is LZ4-compressed.
     """
     coordinates, facts = read_block(source)
     yield grid_of_block(coordinates, facts, source.stem)
 
 
 def read_block(source: Source) -> tuple[list[Floats], Facts]:
-    """Return x, y, z, each (ni, nj, nk), and the file's texts. Raises InputError: see `read_grids`."""
+    """Return x, y, z, each (ni, nj, nk), and the metadata of a ``.vts`` file; errors as `read_grids`."""
     raw = source.buffer()
     root, start, end = _parsed(raw)
     dataset = _child(root, "StructuredGrid")
@@ -52,7 +52,7 @@ def read_block(source: Source) -> tuple[list[Floats], Facts]:
 
 
 def vtk_root(text: bytes, kind: str) -> Element:
-    """Return the XML of a VTK file. Raises InputError: not XML; a document type; not of this `kind`."""
+    """Return the root of a VTK file. Raises InputError: not XML; a document type; not of this `kind`."""
     from xml.etree.ElementTree import ParseError, fromstring
 
     if b"<!" in text.replace(b"<!--", b"") or b"\0" in text:

@@ -40,19 +40,19 @@ _MOST_IN_PART, _MOST_FOR_MANY_WORKERS = 1000, 100  # inputs per part at most; if
 
 
 class Destination:
-    """Output of a batch: ``-``, one file, or one file per result.
+    """Output of a batch: ``-``, one file, or a file for each result.
 
     Parameters
     ----------
-    text : the name, or a pattern with ``{stem}``, ``{index}`` or ``{name}``.
-    fmt : name of the format; None: by the extension.
+    text : file name, or a pattern with ``{stem}``, ``{index}`` or ``{name}`` for several files.
+    fmt : name of the format; None: determined by the extension.
     kind : kind of the results.
-    put : function that writes to a path in place of the format's own.
+    put : function that writes to a path; None: that of the format.
     part_size : number of inputs in a part of a dataset; None: derived from `nodes`.
-    nodes : approximate number of nodes per result.
-    space : kind of blocks in space of all results; None: planar.
+    nodes : approximate number of nodes of a result.
+    space : kind of three-dimensional blocks of the results; None: they are planar.
 
-    Raises InputError: an unknown field or extension; a format that cannot be written, or has no parts.
+    Raises InputError if a field or extension is unknown, or if the format cannot be written or has no parts.
     """
 
     def __init__(
@@ -80,7 +80,7 @@ class Destination:
             raise InputError("standard output is the terminal", "pipe it on, or write to a file", source="-o")
 
     def path(self, item: Item[Any]) -> str:
-        """Return the path for a result. Raises InputError: an earlier result has the same path."""
+        """Return the path for the result of a member. Raises InputError: an earlier result has it."""
         if not self.each:
             return self.format.file_at(self.text)
         if item.index == NO_NUMBER and "index" in _fields(self.text):
@@ -99,19 +99,18 @@ class Destination:
         return path
 
     def check_room(self, remedy: str = "") -> None:
-        """Raise InputError, with `remedy`, if there are several inputs and the file stores one."""
+        """Raise InputError, with `remedy`, if the output is one file that stores only one result."""
         if not (self.each or self.format.many):
             remedies = filter(None, (self._named("stem"), remedy))
             problem = f"several inputs and one {self.format.name} file, which holds one"
             raise InputError(problem, "; ".join(remedies), source=self.text)
 
     def part_size_for(self, inputs: Inputs | DrawnInputs, files: Files, *, elsewhere: bool) -> int:
-        """Return the number of inputs in a part of the dataset, 0 for an output without parts.
+        """Return the number of inputs in a part of the dataset; 0 if the output has no parts.
 
-        Parts are written if requested, for a shard, to continue existing parts, and for more than `MANY`
-        inputs. Parts are smaller for a shard, and if workers may be on another machine (`elsewhere`).
-
-        Raises InputError: an existing dataset would be replaced, or cannot be continued.
+        There are parts if requested, for a shard, to continue existing parts, and for more than `MANY`
+        inputs. Parts are smaller for a shard, or if workers may be on other machines (`elsewhere`). Raises
+        InputError if an existing dataset would be replaced or cannot be continued.
         """
         if not inputs.more_than(0):
             return 0
@@ -133,7 +132,7 @@ class Destination:
         return self._part_size or PartFiles(index).size_there() or usual_part_size(self._nodes, most)
 
     def part_files(self, make: object, size: int) -> PartFiles:
-        """Return the files of a dataset in parts of `size` inputs, computed by `make`."""
+        """Return the files of a dataset in parts of `size` inputs, given the settings `make` of its grids."""
         from meshonet.formats.hdf5.parts import PartFiles, digest_of
         from meshonet_cli.batch.settings_text import described
 
@@ -141,7 +140,7 @@ class Destination:
         return PartFiles(Path(self.text), request, size)
 
     def check_several(self, item: Item[Any]) -> None:
-        """Raise InputError if the output stores one result and the file of `item` has several."""
+        """Raise InputError if the output can store only one result; the input of `item` has several."""
         if not (self.each or self.format.many):
             problem = f"holds several grids or boundaries, and a {self.format.name} file holds one"
             raise InputError(problem, self._named("index"), source=item.source)
@@ -152,14 +151,14 @@ class Destination:
         return f"name the output '{_escaped(_pattern(self.text, field))}'{dataset}"
 
     def write(self, path: str, what: Iterable[Any]) -> None:
-        """Write `what` to `path` atomically."""
+        """Write the results `what` to `path` atomically."""
         folder = self.format.fills_folder
         with whole_file(path, make_folder=self.each or folder, beside=folder or self.format.beside) as part:
             self._put(part, what, *([] if self.failed is None else [self.failed]))
 
 
 def usual_part_size(nodes: int | None, most: int = _MOST_IN_PART) -> int:
-    """Return how many grids of `nodes` nodes (None if unknown) a part of 256 MiB holds, at most `most`.
+    """Return how many grids of `nodes` nodes (None: unknown) fit into a part of 256 MiB, at most `most`.
 
     The number is rounded down to 1, 2 or 5 times a power of ten.
 
@@ -201,7 +200,7 @@ def _fields(text: str) -> list[str]:
 
 
 def same_size(what: Grid | Boundary | Layout, size: str) -> str:
-    """Return the size of a result for a dataset. Raises InputError: it differs from `size`."""
+    """Return the size of a result as text. Raises InputError if `size` is not empty and differs from it."""
     if not isinstance(what, Grid | Boundary):  # files of layouts hold one
         return ""
     own = size_of(what)

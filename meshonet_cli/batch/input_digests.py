@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 
 def digests_of(entry: str | InputError | Draw) -> list[Input]:
-    """Return the input with a digest of name and content; for a dataset, one entry per sample.
+    """Return an input and a digest of its name and content; for a dataset, an entry for each sample.
 
-    For an unreadable input the digest is that of the error.
+    The digest of an unreadable input is that of its error.
     """
     if isinstance(entry, InputError):
         return [Input(entry.source, digest_of(entry.source, str(entry)))]

@@ -21,7 +21,7 @@ NO_NUMBER = -1
 
 @dataclass(frozen=True)
 class Item(Generic[T]):
-    """One member of a batch."""
+    """A member of a batch: a shape, a grid, or the error of an unreadable one."""
 
     index: int  # counted from 0 over all inputs, or NO_NUMBER
     source: str  # the input as the user wrote it
@@ -33,12 +33,12 @@ class Item(Generic[T]):
     path: str = ""  # of its own file, where it has one
 
     def without_content(self) -> Item[None]:
-        """Return the member without its content, for another process."""
+        """Return this member without its shape or grid, to send it to another process."""
         return replace(self, what=None)  # type: ignore[arg-type, return-value]
 
     @property
     def label(self) -> str:
-        """Name in messages."""
+        """Name of the member in messages."""
         source = "stdin" if self.source == "-" else printable(self.source)
         return source if self.only else f"{source}[{self.name or self.index}]"
 
@@ -66,7 +66,7 @@ Make: TypeAlias = Callable[[Iterable[Item[Any]]], Iterator[Pair]]
 
 
 def attempted(make: Callable[[T], V], each: Iterable[T]) -> Iterator[tuple[T, V | Exception]]:
-    """Yield each element with the result of `make`, or with its error."""
+    """Yield each element with the result of `make` for it, or with its error."""
     for one in each:
         try:
             yield one, make(one)
@@ -75,7 +75,7 @@ def attempted(make: Callable[[T], V], each: Iterable[T]) -> Iterator[tuple[T, V 
 
 
 def made(outcome: V | Exception) -> V:
-    """Return a result, or raise it if it is an error."""
+    """Return a result; if it is an error, raise it."""
     if isinstance(outcome, Exception):
         raise outcome
     return outcome

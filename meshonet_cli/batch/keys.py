@@ -13,13 +13,13 @@ from meshonet_cli.batch.item import Item
 
 
 class Keys:
-    """Keys (names that differ from each other) that samples of a dataset, or of a part, have been given."""
+    """Unique names of the samples of a dataset, or of a part of it."""
 
     def __init__(self) -> None:
         self._names = UniqueNames()
 
     def named(self, item: Item[Any], what: Any) -> Any:
-        """Return the grid or boundary `what`, named by its key; a different name is kept as title."""
+        """Return the grid or boundary `what` with a unique name; another original name becomes its title."""
         if not isinstance(what, Grid | Boundary):
             return what
         key = self._names.add(item.stem if _of_file(item) else what.name)

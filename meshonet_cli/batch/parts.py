@@ -35,7 +35,7 @@ class PartTask:
 
 @dataclass
 class PartDone:
-    """Result for a part."""
+    """Result of a task: the state of a part and what became of its members."""
 
     number: int  # of the part
     path: str  # of its file
@@ -46,7 +46,7 @@ class PartDone:
 
 @dataclass(frozen=True)
 class PartMaker:
-    """Makes parts, in this process or another, and returns reports."""
+    """Makes parts of a dataset, in this process or another."""
 
     files: PartFiles  # paths of the parts
     kind: Kind  # grids or boundaries
@@ -114,16 +114,16 @@ def deliver_parts(
     outcomes: Outcomes, files: PartFiles, session: Session, written: Callable[[Any, str], None], *,
     skip_existing: bool, whole: bool,
 ) -> None:  # fmt: skip
-    """Report every member when its part is complete, and write the index of all parts.
+    """Report the members of each part when the part is complete, and write the index of all parts.
 
-    A part that fails is reported, and missing from the index until the command is repeated.
+    A part that fails is reported. It is missing from the index until the command is repeated.
 
     Parameters
     ----------
     written : called with the report of each successful member and the path of the file.
-    whole : whether these are all parts, not a shard.
+    whole : whether these are all parts, not only those of a shard.
 
-    Raises OtherPartsError: existing parts differ, or must not be skipped.
+    Raises OtherPartsError if existing parts belong to another dataset or must not be skipped.
     """
     files.check(skip_existing=skip_existing)
     session.batch, session.dataset = True, str(files.index)

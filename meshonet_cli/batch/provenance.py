@@ -12,10 +12,10 @@ _MOST_NAMED = 12  # words between options that are all kept
 
 
 def provenance(arguments: Sequence[str] | None = None) -> dict[str, str]:
-    """Return the version and the command line of the program, without the name of the output.
+    """Return version and command line of the program; the command line is without the name of the output.
 
-    Equal inputs and settings then give equal bytes. `arguments` are without the program's name; None: the
-    arguments of this process.
+    The same inputs and settings thus give the same bytes. `arguments` are without the program's name; None:
+    those of this process.
 
     >>> provenance(["tfi", "a b.csv", "-o", "grid.vts", "--res", "80"])["command"]
     "meshonet tfi 'a b.csv' --res 80"
@@ -25,7 +25,7 @@ def provenance(arguments: Sequence[str] | None = None) -> dict[str, str]:
 
 
 def abridged(words: Sequence[str]) -> list[str]:
-    """Return a command line with a shortened list of inputs, for the grids of a dataset.
+    """Return a command line in which a long list of inputs is shortened, for the grids of a dataset.
 
     >>> abridged(["tfi", *(f"{k}.csv" for k in range(40)), "--res", "80"])
     ['tfi', '0.csv', '[38 more]', '39.csv', '--res', '80']

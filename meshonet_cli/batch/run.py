@@ -28,7 +28,7 @@ Written = Callable[[Any, str], None]
 
 
 def each(make: Callable[..., tuple[Any, Timed]], **settings: Any) -> Make:
-    """Return a function that computes the results of members one by one."""
+    """Return a function that calls `make`, with these settings, for one member after the other."""
     return partial(attempted, partial(make, **settings))
 
 
@@ -49,7 +49,7 @@ class BatchTask:
 
 @dataclass(frozen=True)
 class Batch:
-    """A run of a command: inputs, output, messages and engine."""
+    """A run of a command: its inputs, output, messages and engine."""
 
     inputs: Any  # `Inputs`, or `DrawnInputs`
     files: Files
@@ -62,12 +62,10 @@ class Batch:
         return self.session.finish()
 
     def deliver(self, task: BatchTask, written: Written) -> None:
-        """Process every member, write its result, and report it by `written`.
+        """Process each member, write its result, and call `written` with its report.
 
-        A member that fails is reported and left out. With ``skip_existing``, members with existing outputs
-        are skipped.
-
-        Raises InputError: an output that cannot be written.
+        A member that fails is reported and left out. With ``skip_existing``, a member whose output exists is
+        skipped. Raises InputError if the output cannot be written.
         """
         files, session = self.files, self.session
         destination = Destination(
@@ -168,7 +166,7 @@ class Batch:
 
 @dataclass(frozen=True)
 class MemberWork:
-    """Computes results of members, in this process or another, and writes each to its own file."""
+    """Function that computes the results of members and writes each to its own file, in any process."""
 
     make: Make
     destination: Destination | None

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Files:
-    """Output of a command, formats, and treatment of existing results."""
+    """Output of a command, formats, and what happens to existing results."""
 
     output: str  # a file, ``-``, or a pattern of files with ``{stem}``, ``{index}`` or ``{name}``
     # from_format, to_format: formats that names and content do not determine
@@ -31,7 +31,7 @@ EngineName = Literal["processes", "dask", "mpi"]
 
 @dataclass(frozen=True)
 class Engine:
-    """Engine that works on the members of a batch. Raises InputError: settings that exclude each other."""
+    """The processes that work on the members of a batch. Raises InputError: contradictory settings."""
 
     name: EngineName = "processes"  # processes of this machine, a Dask cluster, or the ranks of MPI
     jobs: int = 1  # number of processes, or of workers of a local Dask cluster
@@ -46,7 +46,7 @@ class Engine:
 
     @property
     def here(self) -> bool:
-        """Whether this process does all the work."""
+        """Whether this process does all work itself."""
         return self.name == "processes" and self.jobs == 1
 
     @property
@@ -55,7 +55,7 @@ class Engine:
         return self.name == "mpi" or self.scheduler is not None
 
     def threads(self, wanted: int | None = None) -> int | None:
-        """Return the threads of each worker: `wanted`, or its share of the cores; None: no limit."""
+        """Return the threads of a worker: `wanted`, or its share of the cores; None: not limited."""
         if wanted is not None or self.here:
             return wanted
         return 1 if self.elsewhere else max(cores() // self.jobs, 1)
@@ -63,7 +63,7 @@ class Engine:
     def workers(self, warn: Warn) -> AbstractContextManager[Workers]:
         """Return a context with the workers; `warn` is called with messages about them.
 
-        Raises InputError: the engine is not installed, or cannot be reached.
+        Raises InputError if the engine is not installed or cannot be reached.
         """
         # loaded here: concurrent.futures alone takes 10 ms
         module = import_module(f"meshonet_cli.batch.executors.{self.name}_engine")

@@ -16,9 +16,9 @@ _MODEL = ".safetensors"  # extension of model files
 
 
 def described(value: object) -> str:
-    """Return `value` as text: dataclasses, containers, arrays and plain values.
+    """Return settings as text: dataclasses, containers, arrays and plain values.
 
-    Models are described by the content of their files, other objects by their attributes.
+    A model is described by the content of its files, any other object by its attributes.
 
     >>> described({"b": (1, 2.5), "a": None})
     "{'a': None, 'b': (1, 2.5,)}"

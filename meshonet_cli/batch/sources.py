@@ -29,7 +29,7 @@ _OFTEN = (
 def members_of(
     inputs: Inputs | DrawnInputs, read: Callable[[Any], Iterator[T]], session: Session
 ) -> Iterator[Item[T]]:
-    """Yield the members of every input; an unreadable one is reported and skipped."""
+    """Yield the members of all inputs; an unreadable member is reported and left out."""
     session.batch = session.batch or inputs.more_than(1)
     if session.live:
         session.watch()
@@ -47,7 +47,7 @@ def records(
     inputs: Iterable[Numbered | str | InputError | Draw], read: Callable[[Any], Iterator[Any]], *,
     alone: bool = False,
 ) -> Iterator[Item[Any]]:  # fmt: skip
-    """Yield every member of every input, or an error for an unreadable one.
+    """Yield the members of all inputs; an unreadable member yields an error as its content.
 
     With `alone`, a member of a family counts as the only one of its input.
     """
@@ -109,7 +109,7 @@ def _entries(
 def assembly(
     inputs: Inputs, read: Callable[[str], Iterator[Shape]], sampling: Sampling, session: Session
 ) -> Iterator[Item[Shape]]:
-    """Yield the domain that the shapes of all inputs form; after an error, report it and yield nothing."""
+    """Yield the single domain that the shapes of all inputs form. An error is reported and yields nothing."""
     from meshonet.geometry.shapes.assembly import assembled
 
     label = " + ".join(inputs.words)

@@ -7,16 +7,16 @@ from typing import Any, NamedTuple
 
 
 class Command(NamedTuple):
-    """Name and summary of a command, whose module is loaded when needed.
+    """Name and summary of a command; its module is loaded when needed.
 
-    The module of ``solve-pde`` is ``solve_pde``, with a function ``solve_pde`` and its tested ``EXAMPLES``.
+    The module of ``solve-pde`` is ``solve_pde``, with a function ``solve_pde`` and tested ``EXAMPLES``.
     """
 
     name: str
     summary: str
 
     def loaded(self) -> tuple[Callable[..., Any], tuple[str, ...]]:
-        """Return the function and the examples of its use."""
+        """Return the function of the command and examples of its use."""
         name = self.name.replace("-", "_")
         module = import_module(f"{__name__}.{name}")
         return getattr(module, name), module.EXAMPLES

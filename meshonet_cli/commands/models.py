@@ -39,7 +39,7 @@ def models(
 
 
 def models_table(models: list[dict[str, Any]]) -> str:
-    """Return one line per model: its use, time and error."""
+    """Return a text with a line for each model: its use, time and error."""
     rows = [["model", "for", "takes", "median error"]]
     rows += [[model["name"], model["use"], model["speed"], model["error"]] for model in models]
     more = "meshonet models NAME tells all of one; meshonet infer --model NAME makes grids by it"
@@ -47,7 +47,7 @@ def models_table(models: list[dict[str, Any]]) -> str:
 
 
 def model_text(facts: Mapping[str, Any]) -> str:
-    """Return the description of a model: its name, then one fact per line.
+    """Return the description of a model: its name, then a line for each fact.
 
     >>> print(model_text({"name": "demo", "topology": "o", "recipe": {"shapes": 30, "seed": 1}}))
     demo

@@ -23,7 +23,7 @@ _ranks: MPIPoolExecutor | None = None  # executor of the other ranks, while the 
 
 
 def on_ranks(run: Callable[[], int]) -> int:
-    """Call `run` on rank 0, with the other ranks as workers, and return its exit code, 0 on other ranks."""
+    """Call `run` on MPI rank 0, with the other ranks as workers; return its exit code, 0 on other ranks."""
     global _ranks
     try:
         from mpi4py import MPI
@@ -47,7 +47,7 @@ def on_ranks(run: Callable[[], int]) -> int:
 
 @contextmanager
 def opened(engine: Engine, warn: Warn) -> Iterator[Workers]:  # noqa: ARG001  (the signature of all engines)
-    """Return a context with the other ranks as workers."""
+    """Return a context with all MPI ranks but rank 0 as workers."""
     if _ranks is None:
         _check_installed()
         remedy = "start the program as mpiexec -n 3 meshonet ..., which has two workers"

@@ -26,7 +26,7 @@ _GRACE = 10.0  # seconds that a process has to remove what it was writing
 
 @contextmanager
 def opened(engine: Engine, warn: Warn) -> Iterator[Workers]:
-    """Return a context with new processes, which are terminated if the context ends in an error."""
+    """Return a context with new worker processes; after an error in the context they are terminated."""
     share_cores()
     others = set(active_children())
     workers = _Processes(engine.jobs, warn)
@@ -41,7 +41,7 @@ def opened(engine: Engine, warn: Warn) -> Iterator[Workers]:
 
 
 def share_cores() -> None:
-    """Limit NumPy's linear algebra to one thread in processes that start from now on."""
+    """Limit NumPy's linear algebra to one thread in processes that are started later."""
     for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")
 

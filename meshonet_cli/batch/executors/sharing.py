@@ -34,9 +34,9 @@ def shared(
     work: Callable[[Iterable[Item[Any]]], Iterator[Pair]], todo: Iterator[Item[Any]], size: int,
     engine: Engine, warn: Warn,
 ) -> Iterator[Pair]:  # fmt: skip
-    """Yield members in order with their results, computed by the workers of `engine`.
+    """Yield each member in `todo` with its result; `work` runs on the workers of `engine`.
 
-    A task has `size` members; if `size` is 1, fast members are grouped.
+    The order is that of `todo`. A task has `size` members; if `size` is 1, fast members share tasks.
     """
     timed, grows, most = _Timed(work), size == 1, size
 

@@ -14,7 +14,7 @@ _PATIENCE = 0.5  # seconds between looks at the engine while a result is waited 
 
 
 class WorkerDiedError(MeshonetError):
-    """Error: the worker of a task died twice."""
+    """Error: two workers died while they worked on the same task."""
 
     exit_code = 3
 
@@ -26,11 +26,11 @@ class WorkerDiedError(MeshonetError):
 
 
 class EngineLostError(InputError):
-    """Error: the executor and its tasks are lost."""
+    """Error: all workers and their tasks are lost."""
 
 
 class Workers:
-    """An executor and the state of its workers; base class of the engines.
+    """Workers of an engine; base class of all engines.
 
     Parameters
     ----------
@@ -42,22 +42,22 @@ class Workers:
         self.executor, self.count = executor, count
 
     def submit(self, function: Callable[[T], R], task: T) -> Future[R]:
-        """Submit a task to a worker."""
+        """Give a task to a worker and return its future."""
         return self.executor.submit(function, task)
 
     def check(self) -> None:
-        """Report dead workers. Raises EngineLostError: no worker is left."""
+        """Report dead workers. Raises EngineLostError if no worker is left."""
 
     def renew(self) -> None:
-        """Replace a broken executor. Raises EngineLostError: impossible."""
+        """Replace an executor whose worker died. Raises EngineLostError if this is impossible."""
         raise self.lost()
 
     def lost(self) -> EngineLostError:
-        """Return the error for a lost executor."""
+        """Return the error for lost workers."""
         return EngineLostError("the workers are gone", "run the command again, with {skip_existing}")
 
     def result(self, future: Future[R]) -> R:
-        """Return the result of a task, or raise its error."""
+        """Wait for the result of a task and return it, or raise the error of the task."""
         while True:
             self.check()
             try:
@@ -72,9 +72,9 @@ class Workers:
     def in_order(
         self, function: Callable[[T], R], tasks: Iterable[T], ahead: int
     ) -> Iterator[tuple[T, R | Exception]]:
-        """Yield each of the `tasks` with the result of `function`, or with its error.
+        """Yield each of the `tasks`, in order, with the result of `function` or its error.
 
-        Tasks are read when results are requested; `ahead` more tasks than workers are in progress.
+        At most `ahead` more tasks than there are workers are in progress or wait to be yielded.
         """
         under_way: deque[tuple[T, Future[R]]] = deque()
         for task in tasks:
@@ -87,7 +87,7 @@ class Workers:
             yield left
 
     def alone(self, function: Callable[[T], R], task: T) -> R:
-        """Return the result of a task that runs without others. Raises WorkerDiedError: its worker died."""
+        """Return the result of a task that runs without others. Raises WorkerDiedError if its worker died."""
         try:
             return self.result(self.submit(function, task))
         except BrokenExecutor as error:
