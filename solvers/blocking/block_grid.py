@@ -41,10 +41,11 @@ def fine_layout(
     halved: int = 0,
     timings: Timings | None = None,
 ) -> Layout:
-    """Return a layout with the requested number of cells and optimised nodes.
+    """Return a layout that is refined to the requested number of cells, with optimised nodes.
 
-    Then all cells are halved `halved` times in both directions: every second, fourth, ... node is a node of a
-    coarser nested grid. Raises NoValidGridError: folded cells remain.
+    Give `cells` or `cell_size`, an edge length; by default there are `CELLS` cells. Each cell is then divided
+    into four, `halved` times, so that coarser grids are nested in the result. Raises NoValidGridError if
+    cells stay folded.
     """
     timings = {} if timings is None else timings
     area = layout.mesh.domain.area
@@ -112,10 +113,10 @@ def _counts(chords: Chords, least: Indices, wanted: float, size: float | None, h
 
 
 def cut_off(fine: Layout, area: float = 0.0) -> float:
-    """Return the fraction of `area` that the straight edges of cells along curved walls cut off.
+    """Return the area that the straight edges of cells cut off along curved walls, divided by `area`.
 
-    The fraction is negative if the cells cover more than `area`. The default of `area` is the area inside the
-    polygons through the points of the domain.
+    The result is negative if the cells cover more than `area`. The default of `area` is the area of the
+    domain with straight lines between the points of its boundary.
     """
     (x, y), area = fine.mesh.nodes[fine.mesh.quads].transpose(2, 0, 1), area or fine.mesh.domain.area
     return 1.0 - 0.5 * float((x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum()) / area

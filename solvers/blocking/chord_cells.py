@@ -15,7 +15,7 @@ STEEPEST = 8.0  # largest ratio of the largest to the smallest cell along an edg
 
 
 class WantedCounts:
-    """Target cell counts of chords (rows of blocks), for target sizes that are given at the same points."""
+    """Converter from target sizes, always at the same points, to cell counts of chords (rows of blocks)."""
 
     def __init__(self, chords: Chords, metric: SizeMetric) -> None:
         self.chords = chords
@@ -27,9 +27,9 @@ class WantedCounts:
         self.first = np.cumsum([0, *(len(edge) - 1 for edge in chords.edges)])[:-1]
 
     def counts(self, metric: SizeMetric, multiple: int = 1) -> Indices:
-        """Return the multiples (chords,) of `multiple` that are nearest to the target numbers of cells.
+        """Return, for each chord, the multiple (chords,) of `multiple` nearest to its target number of cells.
 
-        The target of a chord is the geometric mean of the targets of its edges.
+        The target number of a chord is the weighted geometric mean of the target numbers of its edges.
         """
         parts = [self.length / near.length(metric) for near in self.near]
         chords = self.chords
@@ -40,10 +40,11 @@ class WantedCounts:
 
 
 def metric_places(chords: Chords, counts: Indices, metric: SizeMetric) -> list[Floats]:
-    """Return, for each edge, the positions (cells + 1,) of its new nodes as fractional indices of old nodes.
+    """Return, for each edge of the blocks, the positions (cells + 1,) of its new nodes.
 
-    `counts` (chords,) are the new numbers of cells. New nodes divide the integral of 1/size into equal parts.
-    Positions on opposite edges of a block are averaged, so that grid lines between them are nearly straight.
+    A position is a fractional index: 2.5 is midway between the old nodes 2 and 3. `counts` (chords,) are the
+    new numbers of cells. Cell lengths follow the target sizes `metric`. Positions on opposite edges of a
+    block are averaged, so that the grid lines between them are nearly straight.
     """
     nodes = chords.layout.mesh.nodes
     cells = counts[chords.chord]

@@ -60,8 +60,6 @@ def decompose(
 ) -> Layout:
     """Return a layout of the blocks of a domain, with an optimised quad mesh.
 
-    A domain with periodic sides gets no symmetric nodes.
-
     Parameters
     ----------
     cells : number of cells of the quad mesh from which blocks are derived.
@@ -69,9 +67,9 @@ def decompose(
     price : price of a block, in degrees of mean deviation from 90 degrees; a higher price gives fewer blocks.
     timings : filled with the times of the stages.
     sizes : target lengths of the edges of the quad mesh, used instead of `cells`.
-    symmetric : whether a symmetric domain gets symmetric blocks (`symmetry.symmetric`).
+    symmetric : whether a symmetric domain gets symmetric blocks; no effect if it has periodic sides.
 
-    Raises SolverError: no attempt gave a valid layout, or the domain has too many corners.
+    Raises SolverError if no attempt gives a valid layout, or if the domain has too many corners.
     """
     timings = {} if timings is None else timings
     blocks = _found(domain, cells, count, price, timings, sizes, ())
@@ -178,7 +176,7 @@ def _optimised(mesh: QuadMesh, iterations: int, sizes: SizeMetric | None) -> Qua
 
 
 def most_folded(mesh: QuadMesh) -> str:
-    """Return the position of the most folded corner of a mesh as text; NaN counts as most folded."""
+    """Return the position of the most folded corner of a mesh, as text; a corner with NaN comes first."""
     jacobian = np.nan_to_num(corner_jacobians(mesh.nodes[mesh.quads]), nan=-np.inf)
     x, y = mesh.nodes[mesh.quads.ravel()[int(np.argmin(jacobian))]]
     return f"at ({x:.6g}, {y:.6g})"

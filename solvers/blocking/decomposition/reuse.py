@@ -24,9 +24,9 @@ OFFSETS = 128  # number of points around a loop without corners at which it is c
 
 
 def carried_over(layout: Layout, domain: Domain) -> Layout:
-    """Return the layout with its nodes on and inside the loops of another domain; cells may be folded.
+    """Return the layout transferred to another domain; its cells may be folded.
 
-    Raises InputError if the numbers of loops, or of corners on a loop, differ; the message says which.
+    Raises InputError if the two domains differ in the number of loops, or of corners on a loop.
     """
     mesh = layout.mesh
     pairs = _pairs(mesh.domain.loops, domain.loops)

@@ -25,7 +25,10 @@ _NONE: Mapping[int, int] = MappingProxyType({})
 
 
 def sums_of(chords: Chords) -> Sums:
-    """Return, by name of each side with a given cell count, how many edges of each chord are on this side."""
+    """Return how many edges of each chord are on each side with a given cell count, by side name and chord.
+
+    Raises InputError if such a side begins or ends where the boundary goes straight on.
+    """
     mesh = chords.layout.mesh
     given = mesh.domain.counts
     if not given:
@@ -64,13 +67,13 @@ def suited(
 ) -> Indices:  # fmt: skip
     """Return the admissible cell counts of chords (rows of blocks), at least `least`, nearest to `counts`.
 
-    Admissible counts are multiples of `multiple` and agree along the two sides of each periodic pair. If
-    `named`, they add up to the counts given for named sides, times `multiple`. `fixed` prescribes the counts
-    of some chords. If each cell is divided into `finer` cells later, these sums are divided by `finer` and
-    rounded up or down.
+    Admissible counts are multiples of `multiple`, and give both sides of each periodic pair the same number
+    of cells. If `named`, sides with a given cell count have `multiple` times that count, divided by `finer`
+    and rounded up or down; `finer` is the number of cells that each cell becomes later. `fixed` prescribes
+    the counts of some chords, by index.
 
-    Raises InputError: given counts that contradict each other, or that are too small; SolverError: no counts
-    are equal along periodic sides.
+    Raises InputError if given counts contradict each other or are too small; SolverError if no counts are
+    equal along periodic sides.
     """
     sums, alike = sums_of(chords) if named else {}, _alike(chords)
     if not sums and not alike:
@@ -123,7 +126,7 @@ def _conflict(names: tuple[str, ...], given: Mapping[str, int], sums: Sums, leas
 
 
 def nearer(chords: Chords, counts: Indices, multiple: int = 1) -> Indices:
-    """Return cell `counts` of chords, scaled so that named sides have nearly their given cell counts."""
+    """Return `counts`, scaled so that sides with a given cell count have nearly `multiple` times as many."""
     counts = counts.copy()
     for name, row in sums_of(chords).items():
         total = sum(times * counts[chord] for chord, times in row.items())
@@ -134,7 +137,7 @@ def nearer(chords: Chords, counts: Indices, multiple: int = 1) -> Indices:
 
 
 def check_sides(layout: Layout) -> None:
-    """Raise SolverError if no counts can agree on periodic sides, or a block extends past an end of these."""
+    """Raise SolverError if periodic sides cannot have equal cell counts, or blocks reach past their ends."""
     mesh = layout.mesh
     if not mesh.domain.periodic:
         return
@@ -154,7 +157,7 @@ def _unmatched(sides: Periodic) -> str:
 
 
 def alike_along_sides(chords: Chords, counts: Indices) -> bool:
-    """Return whether cell `counts` of chords are equal in sum on both sides of every periodic pair."""
+    """Return whether both sides of every periodic pair have equally many cells, for `counts` of chords."""
     return all(
         sum(value * counts[chord] for chord, value in row.items()) == 0.0 for row, _, _ in _alike(chords)
     )
@@ -166,7 +169,7 @@ def _alike(chords: Chords) -> list[Row]:
 
 
 def lacking_side(layout: Layout) -> Indices | None:
-    """Return nodes of a periodic side that must have fewer cells than its partner; None if there is none."""
+    """Return the nodes of a periodic side that always has fewer cells than its partner, or None."""
     if not layout.mesh.domain.periodic:
         return None
     for row, (_, first, second) in zip(_differences(Chords.of(layout)), sides_of(layout.mesh), strict=True):

@@ -24,8 +24,8 @@ from meshonet.kernels._native import split_quads
 class BaseComplex:
     """Blocks of a quad mesh, the edges that bound them, and the chords (rows of blocks).
 
-    A chord is the set of all sides that are reached from one side by repeated steps across a block to its
-    opposite side. All sides of a chord have the same number of cells.
+    A chord is the set of all block sides that are reached from one side by repeated steps across a block to
+    its opposite side. All sides of a chord have the same number of cells.
     """
 
     mesh: QuadMesh
@@ -44,7 +44,8 @@ class BaseComplex:
         """Edges along the sides of the blocks: south, north, west, east of each block.
 
         The first array (k,) has, for each node of each side, the edge to the next node; -1 at the last node.
-        The second array (4 b,) is the start of each side in the first array, the third (4 b,) its chord.
+        The second array (4 b,) has the index in the first array at which each side begins. The third array (4
+        b,) has the chord of each side.
         """
         lines = [line for block in self.blocks for line in (block[:, 0], block[:, -1], block[0], block[-1])]
         nodes = np.concatenate(lines)
@@ -54,14 +55,17 @@ class BaseComplex:
         return edge, first, self.chord[edge[first]]
 
     def moved(self, mesh: QuadMesh) -> Self:
-        """Return the same blocks with other positions of the nodes."""
+        """Return the same blocks with the node positions of another `mesh` of the same quads."""
         moved = replace(self, mesh=mesh)
         if "sides" in self.__dict__:
             moved.__dict__["sides"] = self.sides
         return moved
 
     def side_lengths(self, unit: Floats | None = None) -> Floats:
-        """Return the lengths (b, 4) of south, north, west, east sides, in a `unit` (e,) for each edge."""
+        """Return the lengths (b, 4) of the south, north, west and east side of each block.
+
+        If `unit` (e,) is given, the length of each edge of the mesh is divided by the edge's unit.
+        """
         edge, first, _ = self.sides
         length = self.mesh.edge_lengths
         if unit is not None:
@@ -71,9 +75,9 @@ class BaseComplex:
 
 
 def base_complex(mesh: QuadMesh, lines: Bools | None = None) -> BaseComplex:
-    """Return the blocks of a quad mesh; `lines` (e,) is a mask of further edges at which blocks end.
+    """Return the blocks of a quad mesh, which also end at the edges in the mask `lines` (e,).
 
-    Raises SolverError: the mesh is not manifold, or a region between lines has no ni x nj nodes.
+    Raises SolverError if the mesh is not manifold, or if a block does not consist of rows and columns.
     """
     quads = np.ascontiguousarray(mesh.quads, dtype=np.intp)
     bounds = mesh.on_wall.copy() if lines is None else mesh.on_wall | lines

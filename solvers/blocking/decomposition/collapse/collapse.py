@@ -38,10 +38,10 @@ PER_TRIAL, PER_OPTIMUM = 3, 20
 
 
 def simplify(mesh: QuadMesh, *, price: float, sizes: SizeMetric | None) -> BaseComplex:
-    """Return the blocks of an optimised quad mesh after collapsing chords (rows of blocks), narrowest first.
+    """Return the blocks of an optimised quad mesh after removing chords (rows of blocks), narrow ones first.
 
-    `sizes` are prescribed lengths of edges. `price` is how much the mean deviation of angles from 90 degrees
-    (in degrees) may grow for each block that is removed.
+    `price` is by how many degrees the mean deviation of angles from 90 degrees may grow for each block that
+    is removed. `sizes` are target edge lengths.
     """
 
     def wanted(mesh: QuadMesh) -> Floats | None:
@@ -100,25 +100,24 @@ def _collapsed(current: BaseComplex, chord: int) -> BaseComplex | None:
 
 
 def irregular_inside(mesh: QuadMesh) -> int:
-    """Return the number of interior nodes at which other than four quads meet."""
+    """Return the number of interior nodes at which more or fewer than four quads meet."""
     return int(np.count_nonzero(mesh.irregular & ~mesh.wall_nodes))
 
 
 def widths(current: BaseComplex) -> Floats:
-    """Return the width of each chord (chords,): the mean length of the sides of blocks across it."""
+    """Return the widths (chords,) of chords (rows of blocks): the mean length of the block sides across."""
     chord = current.sides[2]
     edges = np.bincount(chord, minlength=current.chords)
     return np.bincount(chord, current.side_lengths().ravel(), current.chords) / edges
 
 
 def contract(mesh: QuadMesh, rungs: Bools) -> QuadMesh | None:
-    """Return the mesh with the nodes of each edge in `rungs` (e,) merged; None if it would be invalid.
+    """Return the mesh with both ends of each edge in the mask `rungs` (e,) merged; None if that is invalid.
 
-    Merged nodes move to a corner if one of them is a corner; otherwise, to the mean arc length of the wall
-    nodes among them; without wall nodes, to the mean position. The mesh would be invalid if two corners were
-    merged; if wall nodes were merged that no wall edge in `rungs` connects; if more wall nodes than before
-    had a wrong number of quads; or if it were not a conforming mesh of the same domain with 3 to 5 quads
-    around each interior node.
+    A corner of the domain keeps its place, and nodes that are merged with it move there. Otherwise, merged
+    nodes move to the mean arc length of the wall nodes among them, or to their mean position if there are
+    none. Two corners cannot be merged, nor two wall nodes without a wall edge in `rungs` between them. The
+    result is invalid if more wall nodes than before have a wrong number of quads, or if it does not conform.
     """
     label, count = joined_classes(np.ascontiguousarray(mesh.edges[rungs]), len(mesh.nodes))
     kept = ~rungs[mesh.edge_of].any(axis=1)
@@ -166,7 +165,7 @@ def _placed(trial: QuadMesh, mesh: QuadMesh, label: Indices) -> QuadMesh:
 
 
 def is_conforming(mesh: QuadMesh, many: int = 0) -> bool:
-    """Return whether the mesh conforms, with 3 to 5 (or up to `many`) quads around each interior node."""
+    """Return whether the mesh conforms and interior nodes have 3 to 5 quads, or 3 to `many` if larger."""
     inside = mesh.valence[~mesh.wall_nodes]
     few, many = VALENCES[0], max(VALENCES[1], many)
     return conforms(mesh) and bool(((inside >= few) & (inside <= many)).all())

@@ -27,9 +27,9 @@ SIZES = 8.0  # price in degrees of mean deviation if all cells are too long or s
 def score(blocks: BaseComplex, price: float = PRICE, wanted: Floats | None = None) -> float:
     """Return the score of blocks, a weighted sum of penalties in degrees; lower is better.
 
-    Penalties are for deviations of angles from 90 degrees, turns of walls, wrong numbers of quads at the
-    boundary, the number of blocks (times `price`) and uneven sizes. `wanted` (e,) are target lengths of the
-    edges; by default all edges have the same target.
+    Penalties are for angles other than 90 degrees, walls that turn along one edge, wrong numbers of quads at
+    the boundary, the number of blocks (times `price`) and uneven sizes. `wanted` (e,) are target lengths of
+    the edges; by default all edges have the same target.
     """
     mesh = blocks.mesh
     off = deviations(mesh)
@@ -46,7 +46,7 @@ def score(blocks: BaseComplex, price: float = PRICE, wanted: Floats | None = Non
 
 
 def size_spread(blocks: BaseComplex, wanted: Floats | None) -> float:
-    """Return the mean square of log(length / mean length) of the sides of blocks across each chord.
+    """Return how uneven sizes are: the mean square of log(length of a block side / mean over its chord).
 
     All sides of a chord have the same number of cells. Means are weighted by the areas of the blocks. If
     target lengths `wanted` (e,) of edges are given, lengths are divided by them.

@@ -27,7 +27,7 @@ _DIFFUSION = 0.003
 
 @dataclass(frozen=True, eq=False)
 class CrossField:
-    """A cross field on a surface: four directions at right angles, and the number of cells at each vertex."""
+    """Four directions at right angles (a cross) at each point of a surface, and the cells at each vertex."""
 
     surface: Triangulation
     walls: WallDirections
@@ -43,18 +43,18 @@ class CrossField:
 
     @property
     def singular(self) -> Indices:
-        """Interior vertices at which other than four cells meet, ascending."""
+        """Indices of the interior vertices at which more or fewer than four cells meet, ascending."""
         return np.flatnonzero((self.valence != 4) & (self.valence > 0))
 
 
 def cross_field(surface: Triangulation, fewer: bool = True) -> CrossField:
     """Return a smooth cross field that is aligned with the walls of a surface.
 
-    The first field is harmonic, and its singularities are clustered. Steps of normalisation and diffusion
-    separate them (Viertel, Osting, SIAM J. Sci. Comput. 41 (2019) A452-A479). If `fewer` is true, pairs of
-    singularities are then removed where this costs little energy.
+    A harmonic field is smoothed by steps of normalisation and diffusion, which separate its singularities
+    (Viertel, Osting, SIAM J. Sci. Comput. 41 (2019) A452-A479). If `fewer` is true, pairs of singularities
+    that cancel each other are then removed where this costs little energy.
 
-    Raises SolverError: the sum of the singularities contradicts the topology of the surface.
+    Raises SolverError if the singularities do not fit the topology of the surface.
     """
     walls = wall_directions(surface)
     crosses, shears = _smooth(surface, walls, fewer)

@@ -19,7 +19,7 @@ _LARGEST = (
 
 @dataclass(frozen=True, eq=False)
 class Frames:
-    """A direction in each triangle, selected from those of its cross."""
+    """One direction (a frame) in each triangle, selected from the four of its cross."""
 
     field: CrossField
     angles: Floats  # (t,) angle of the direction u
@@ -31,7 +31,7 @@ class Frames:
 
 
 def cut_frames(field: CrossField) -> Frames:
-    """Return a direction (frame) per triangle; frames agree except at cuts that make the surface a disc."""
+    """Return one direction of the cross in each triangle, continuous except at cuts that open the surface."""
     surface = field.surface
     turn, cut = surface_comb(surface.arrays, surface.size, field.quarters)
     keep = surface.on_wall.copy()
@@ -70,9 +70,9 @@ def _wedges(field: CrossField, cut: Bools) -> Indices:
 
 
 def frame_sizes(field: CrossField) -> Floats:
-    """Return lengths e^H (t,) that make the crosses nearly the gradients of two functions; median 1.
+    """Return lengths e^H (t,), one per triangle, with which the crosses are nearly gradients; median 1.
 
-    Frames e^H (cos theta, sin theta) are free of curl if grad H is grad theta rotated by a quarter turn; H
+    Vectors e^H (cos theta, sin theta) are free of curl if grad H is grad theta rotated by a quarter turn; H
     satisfies this in the least-squares sense.
     """
     surface = field.surface

@@ -17,20 +17,20 @@ _IMAGINARY = np.array([0.0, 1.0, 0.0, -1.0])  # imaginary parts of them
 
 
 class Parametrisation:
-    """Linear system for the coordinates w = u + i v of the vertices of an opened surface.
+    """Linear system for the coordinates w = u + i v of the vertices of a surface that is cut open.
 
     The solution minimises the sum over all triangles of weight times area times
 
         |grad u - s (cos theta, sin theta)|^2 + |grad v - s (-sin theta, cos theta)|^2
 
-    u or v is constant along each wall and is one unknown there. Along the cut, the change of w on one side is
-    that on the other side, rotated by a multiple of 90 degrees (Lagrange multipliers). This is the map of
+    Along each wall, u or v is constant and one unknown. Differences of w along one side of the cut are those
+    along the other side, rotated by a multiple of 90 degrees (Lagrange multipliers). This is the map of
     Bommes, Zimmer, Kobbelt (ACM Trans. Graph. 28 (2009) 77) without rounding translations to integers.
 
     Parameters
     ----------
     frames : directions theta and the cut.
-    sizes : (t,) lengths s.
+    sizes : (t,) lengths s of the gradients.
     """
 
     def __init__(self, frames: Frames, sizes: Floats) -> None:
@@ -120,6 +120,6 @@ class Parametrisation:
         return np.asarray(coords[0] + 1j * coords[1])
 
     def jacobians(self, coords: Complexes) -> Floats:
-        """Return the Jacobian determinant (t,) of the map in each triangle, divided by its target."""
+        """Return the Jacobian determinants (t,) of the map `coords` (t, 3), divided by their targets."""
         first, second = coords[:, 1] - coords[:, 0], coords[:, 2] - coords[:, 0]
         return np.asarray(times(np.conj(first), second).imag / (2.0 * self.surface.areas * self._wanted))

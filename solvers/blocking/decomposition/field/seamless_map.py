@@ -23,11 +23,11 @@ _NEARLY_FOLDED, _SMALL = 1e-3, 0.2
 class SeamlessMap:
     r"""Coordinates w = u + i v at each corner of each triangle, continuous up to quarter turns and shifts.
 
-    The coordinates of neighbours f and g agree along their common edge up to
+    Let triangles f and g have a common edge, which is edge e of f and begins at the point a. On this edge
 
-        w_g = i^k (w_f - w_f(a)) + w_g(a),   k = turns[f, e], e the edge in f, a one of its ends,
+        w_g = i^k (w_f - w_f(a)) + w_g(a),   k = turns[f, e]
 
-    so that lines of constant u or v continue across every edge; if k is odd, a u line continues as a v line.
+    Hence lines of constant u or v continue across every edge; if k is odd, a u line continues as a v line.
     Each wall edge is part of such a line. Edge e of a triangle goes from its corner e to corner (e + 1) % 3::
 
                2
@@ -51,17 +51,17 @@ class SeamlessMap:
 
     @property
     def singular(self) -> Indices:
-        """Interior vertices at which other than four cells meet, ascending."""
+        """Indices of the interior vertices at which more or fewer than four cells meet, ascending."""
         return np.flatnonzero((self.valence != 4) & (self.valence > 0))
 
 
 def seamless_map(domain: Domain, count: int = 1500, seed: int = 0, fewer: bool = True) -> SeamlessMap:
     """Return a seamless map of a domain that is triangulated with about `count` vertices.
 
-    Triangles are smaller at interior singularities. Folded triangles get larger weights; some may stay
-    folded. With `fewer`, the number of singularities is reduced.
+    Some triangles may be folded in the map. If `fewer` is true, the number of singularities is reduced. The
+    triangulation depends on `seed`.
 
-    Raises SolverError: the field or the map has no solution; InputError: the domain cannot be triangulated.
+    Raises SolverError if the field or the map has no solution; InputError if triangulation is impossible.
     """
     surface = split_edges_between_walls(triangulate(domain, count, seed=seed))
     field = cross_field(surface, fewer)

@@ -16,7 +16,7 @@ _REACH = 0.15
 
 @dataclass(frozen=True, eq=False)
 class WallDirections:
-    """Prescribed angles of the field along walls."""
+    """Prescribed angles of the cross field along walls."""
 
     corner_cells: Indices  # (b,) number of cells at boundary vertices that are corners, 0 at others
     vertices: Floats  # (n,) angle at each wall vertex, 0 at all others
@@ -28,11 +28,11 @@ class WallDirections:
 
 
 def wall_directions(surface: Triangulation) -> WallDirections:
-    """Return directions along the walls of a surface.
+    """Return the directions that the cross field should have along the walls of a surface.
 
-    At a corner of alpha degrees where k cells meet, the directions of the two walls are rotated by
-    (90 k - alpha) / 2 degrees, so that both give the same cross. The rotation decreases with the distance
-    from the corner. At other vertices the direction is the mean of the directions of the two wall edges.
+    At a corner of alpha degrees where k cells meet, the directions of the two walls are rotated by (90 k -
+    alpha) / 2 degrees, so that both give the same cross. The rotation decreases with the distance from the
+    corner. At other vertices the direction is the mean of the directions of the two wall edges.
     """
     triangle, edge = surface.walls
     start = surface.triangles[triangle, edge]

@@ -22,18 +22,18 @@ HalfEdges = dict[tuple[int, int], tuple[int, int]]
 
 
 def half_edges(mesh: QuadMesh) -> HalfEdges:
-    """Return, for each directed edge (a, b) of a quad, the quad, and the number of corner a in it."""
+    """Return, for each directed edge (a, b) of a quad, the index of the quad and that (0 to 3) of a in it."""
     return {(q[i], q[(i + 1) % 4]): (k, i) for k, q in enumerate(mesh.quads.tolist()) for i in range(4)}
 
 
 def with_row(mesh: QuadMesh, path: Sequence[int], *, closed: bool = False, of_wall: bool = False) -> QuadMesh:
     """Return the mesh with a row of quads inserted on the left of a path of nodes.
 
-    The path goes from wall to wall, or is `closed`; it may follow a wall. The side of the row opposite to the
-    path is its front. New nodes are on the front; with `of_wall`, they are on the path. The new quads are the
-    last of the mesh; the first two nodes of each are on the path, the others on the front. If a closed path
-    begins at a corner with one quad, the row crosses itself there, and the last quad is the one at this
-    corner.
+    The path goes from wall to wall or, if `closed`, from its last node back to the first. It may follow a
+    wall. The side of the row opposite to the path is called the front. New nodes are on the front or, if
+    `of_wall`, on the path. The new quads are the last ones of the mesh. The first two nodes of each are on
+    the path, the others on the front. If a closed path begins at a corner with one quad, the row crosses
+    itself there, and the quad at this corner comes last.
     """
     half, n, count = half_edges(mesh), len(mesh.nodes), len(path)
     new = list(range(n, n + count))
@@ -109,7 +109,7 @@ def _left_of(
 def corner_row(mesh: QuadMesh, corner: int, farthest: int) -> QuadMesh | None:
     """Return the mesh with a row of quads around a corner at which a single quad meets; None if impossible.
 
-    The row is as far from the corner as regular nodes permit, but at most `farthest` quads away.
+    The row is `farthest` quads away from the corner, or fewer if irregular nodes are in the way.
     """
     for size in range(farthest, 0, -1):
         lattice = _lattice(mesh, corner, size)

@@ -29,7 +29,7 @@ Station = tuple[float, int, int, int]
 
 @dataclass(frozen=True, eq=False)
 class MotorcycleGraph:
-    """Lines from singular points of a map, up to other lines that they meet; they become grid lines."""
+    """Lines that start at the singular points of a map and end at the first line or wall that they meet."""
 
     map: SeamlessMap
     vertex: Indices  # (n,) vertex of the triangulation at each node, -1 if a ray ended elsewhere
@@ -50,9 +50,9 @@ class _Traced:
 
 
 def motorcycle_graph(seamless: SeamlessMap) -> MotorcycleGraph:
-    """Return the motorcycle graph of a map, with additional lines that connect all walls.
+    """Return the motorcycle graph of a map (lines from singular points), with lines that connect all walls.
 
-    Raises SolverError: a ray that does not end; a wall that cannot be connected to the others.
+    Raises SolverError if a line does not end, or if a wall cannot be connected to the others.
     """
     walls = wall_trails(seamless)
     joined: list[int] = []

@@ -22,19 +22,19 @@ Span = tuple[int, float, float]
 
 
 def wrong_count(mesh: QuadMesh) -> Bools:
-    """Return a mask (n,) of boundary nodes with a wrong number of quads: not 2, or not the corner's own."""
+    """Return a mask (n,) of wall nodes with a wrong number of quads: not 2, or not that of their corner."""
     cells = mesh.places.cells
     return np.asarray(mesh.wall_nodes & (mesh.valence != np.where(cells > 0, cells, 2)))
 
 
 def loops_to_pad(mesh: QuadMesh) -> list[int]:
-    """Return the indices of those loops without corners that have a node with a wrong number of quads."""
+    """Return the indices of boundary loops without corners on which a node has a wrong number of quads."""
     wrong = distinct(mesh.places.loop[wrong_count(mesh)])
     return [int(loop) for loop in wrong if loop >= 0 and not mesh.domain.loops[loop].corners]
 
 
 def spans_to_pad(mesh: QuadMesh, spans: Sequence[Span]) -> list[Span]:
-    """Return those of `spans` that have an inner node with a wrong number of quads."""
+    """Return those of `spans` (parts of loops) on which a node inside has a wrong number of quads."""
     places, wrong = mesh.places, wrong_count(mesh)
     return [
         (loop, begin, end)
@@ -44,7 +44,7 @@ def spans_to_pad(mesh: QuadMesh, spans: Sequence[Span]) -> list[Span]:
 
 
 def pad(mesh: QuadMesh, loops: Sequence[int]) -> QuadMesh:
-    """Return the mesh with a ring of quads along each of `loops`; their old nodes become interior nodes.
+    """Return the mesh with a ring of quads added along each boundary loop in `loops`, inside it.
 
     >>> from meshonet.geometry.domain.domain import Domain
     >>> from meshonet.geometry.layout.quad_mesh import Places
@@ -62,9 +62,9 @@ def pad(mesh: QuadMesh, loops: Sequence[int]) -> QuadMesh:
 
 
 def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
-    """Return the mesh with a row of quads along a span between two corners at each of which one quad meets.
+    """Return the mesh with a row of quads added along a span (part of a loop) between corners with one quad.
 
-    If both corners are the same, the row is closed. The new quads are as in `with_row`.
+    If the span starts and ends at the same corner, the row is closed. The new quads are as in `with_row`.
     """
     number, begin, end = span
     on, length = np.flatnonzero(mesh.places.loop == number), mesh.domain.loops[number].length
@@ -78,7 +78,7 @@ def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
 
 
 def along_wall(mesh: QuadMesh, first: int, last: int) -> list[int]:
-    """Return the nodes along a loop from `first` to `last`; if `first` is `last`, the whole loop."""
+    """Return the nodes along a loop from node `first` to node `last`, or all around if these are the same."""
     after, chain = following(mesh), [first]
     while chain[-1] != last or len(chain) == 1:
         chain.append(int(after[chain[-1]]))

@@ -14,7 +14,7 @@ SLACK = 0.5  # angle in radians by which a ray may lie outside of the triangle t
 
 @dataclass(frozen=True, eq=False)
 class Ports:
-    """Nodes of a motorcycle graph at vertices of the triangulation, and the rays that leave these nodes."""
+    """Vertices at which lines of a motorcycle graph start, and the directions (ports) of these lines."""
 
     vertex: Indices  # (n,) vertex of the triangulation at each node
     quarters: Indices  # (n,) number of right angles around each node, which is the number of cells
@@ -33,7 +33,7 @@ class Ports:
 
 
 def ports_of(seamless: SeamlessMap, joined: Indices) -> Ports:
-    """Return the ports of corners and singular vertices, then of `joined` vertices on walls."""
+    """Return the ports at corners and singular vertices of a map, then at the wall vertices `joined`."""
     cells, around = seamless.boundary_cells, seamless.valence.copy()
     around[: len(cells)] = cells
     corners = np.flatnonzero((seamless.corner_cells > 0) | ((cells != 2) & (cells > 0)))

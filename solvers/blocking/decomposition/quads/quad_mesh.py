@@ -21,11 +21,11 @@ LOOP = 4  # smallest number of cells along a closed wall
 
 
 def quad_mesh(seamless: SeamlessMap, cells: int = 900, sizes: SizeMetric | None = None) -> QuadMesh:
-    """Return a conforming mesh of about `cells` quads, whose irregular nodes are those of the map.
+    """Return a conforming mesh of about `cells` quads, with irregular nodes at singular points of the map.
 
     If `sizes` (target edge lengths) are given, `cells` is ignored. Cells may be folded.
 
-    Raises SolverError: the lines of the map do not bound rectangles, or `cells` are too few.
+    Raises SolverError if the lines of the map do not bound rectangles, or if `cells` are too few.
     """
     mesh = t_mesh(motorcycle_graph(seamless))
     wanted = _plane_lengths(mesh, sizes)
@@ -152,7 +152,7 @@ def _along(nodes: _Nodes, side: Side) -> list[int]:
 
 
 def conforms(mesh: QuadMesh) -> bool:
-    """Return whether quads are a mesh of the domain: manifold, with all holes, and wall nodes on walls."""
+    """Return whether the mesh is manifold, has all holes of its domain, and has boundary nodes on walls."""
     quads, wall = mesh.quads, mesh.wall_nodes
     euler = len(wall) - len(mesh.edges) + len(quads)
     repeated = any((quads == np.roll(quads, k, axis=1)).any() for k in (1, 2))

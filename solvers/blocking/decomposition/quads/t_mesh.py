@@ -22,7 +22,7 @@ Face = tuple[Side, Side, Side, Side]
 class TMesh:
     """Arcs between the nodes of a motorcycle graph (lines from singular points), and the faces between arcs.
 
-    Half-edge 2 a is arc a in the direction of its trail; half-edge 2 a + 1 is the same arc reversed.
+    Half-edge 2 a is arc a in the direction of its line; half-edge 2 a + 1 is the same arc reversed.
     """
 
     graph: MotorcycleGraph
@@ -35,12 +35,12 @@ class TMesh:
 
     @property
     def on_wall(self) -> Indices:
-        """(a,) number of the loop, -1 inside."""
+        """(a,) index of the boundary loop on which each arc is, -1 inside."""
         return np.asarray(self.graph.trails.loop[self.trail])
 
 
 def t_mesh(graph: MotorcycleGraph) -> TMesh:
-    """Return the faces of a motorcycle graph. Raises SolverError: a face is not a rectangle of the map."""
+    """Return the arcs and faces of a motorcycle graph. Raises SolverError if a face is not a rectangle."""
     nodes, trail, span, ways = _arcs(graph)
     follow = _successors(graph, ways)
     faces = []

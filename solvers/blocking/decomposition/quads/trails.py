@@ -14,14 +14,14 @@ Tables = tuple[Floats, Indices, Indices, Indices]
 
 
 def map_tables(seamless: SeamlessMap) -> Tables:
-    """Return the map as arrays: coordinates (t, 3, 2); neighbours, their edges, quarter turns (t, 3) each."""
+    """Return arrays of the map: coordinates (t, 3, 2); neighbours, edges there and turns, each (t, 3)."""
     coords = np.ascontiguousarray(seamless.corner_coords).view(np.float64).reshape(-1, 3, 2)
     return coords, seamless.surface.neighbours, seamless.surface.neighbour_edge, seamless.turns
 
 
 @dataclass(frozen=True, eq=False)
 class Trails:
-    """Lines of constant u or v, each a sequence of pieces (p,), one per triangle."""
+    """Lines of constant u or v in a seamless map, each a sequence of straight pieces, one per triangle."""
 
     first: Indices  # (k + 1,) first piece of each trail
     face: Indices  # (p,) triangle of the piece
@@ -36,15 +36,15 @@ class Trails:
     vertex: Indices  # (p,) vertex at the start of the piece, at walls; -1 elsewhere
 
     def total(self, trail: int) -> float:
-        """Return the length of a trail in the map."""
+        """Return the length of the trail with this index, in coordinates of the map."""
         return float(self.length[self.first[trail + 1] + trail])
 
     def at_vertex(self, vertex: int) -> tuple[int, float]:
-        """Return the wall trail through a vertex, and its length there."""
+        """Return the index of the trail along the wall through a vertex, and its length up to the vertex."""
         return self._on_piece(self.vertex == vertex, 0.0)
 
     def at_edge(self, face: int, edge: int, part: float) -> tuple[int, float]:
-        """Return the wall line through the point at `part` (0 to 1) of an edge, and the length up to it."""
+        """Return the index of the trail along a wall edge, and its length up to `part`, 0 to 1, of it."""
         return self._on_piece((self.face == face) & (self.edge == edge), part)
 
     def _on_piece(self, which: Bools, part: float) -> tuple[int, float]:
@@ -54,7 +54,7 @@ class Trails:
         return trail, float(start + part * (stop - start))
 
     def locate(self, trail: Indices, length: Floats) -> tuple[Indices, Floats]:
-        """Return the pieces (q,) at lengths (q,) along lines `trail` (q,), and fractions (q,) of these."""
+        """Return the piece (q,) at each length (q,) along trails (q,), and the fraction (q,) of the piece."""
         ends = self.length[self.first[1:] + np.arange(len(self.first) - 1)]
         offset = np.append(0.0, np.cumsum(ends))
         owner = np.repeat(np.arange(len(ends)), np.diff(self.first))
@@ -75,7 +75,7 @@ class Trails:
 
 
 def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, rays: int) -> Trails:
-    """Return the trails of rays, from what `trace_rays` returned: `pieces` (p, 3) and `lines` (p, 5)."""
+    """Return the trails of rays, from the arrays `pieces` (p, 3) and `lines` (p, 5) of `trace_rays`."""
     order = np.argsort(pieces[:, 0], kind="stable")
     pieces, lines = pieces[order], lines[order]
     count = np.bincount(pieces[:, 0], minlength=rays)
@@ -100,7 +100,7 @@ def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, rays: int)
 
 
 def wall_trails(seamless: SeamlessMap) -> Trails:
-    """Return the closed lines along the walls, with the domain on their left, the outer loop first."""
+    """Return one closed trail along each wall, with the domain on its left, the outer loop first."""
     triangulation = seamless.surface
     faces, edges = triangulation.walls
     start = triangulation.triangles[faces, edges]
@@ -140,7 +140,7 @@ def wall_trails(seamless: SeamlessMap) -> Trails:
 
 
 def to_plane(seamless: SeamlessMap, face: Indices, w: Complexes) -> Complexes:
-    """Return the points (q,), complex numbers, at the coordinates `w` (q,) in the triangles `face` (q,)."""
+    """Return the points (q,), complex numbers, at map coordinates `w` (q,) in the triangles `face` (q,)."""
     corners = seamless.corner_coords[face]
     a, b, q = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], w - corners[:, 0]
     size = times(a.conj(), b).imag

@@ -8,7 +8,7 @@ from meshonet.solvers.sparse import Factor, SparsePattern
 
 
 class Laplacian:
-    """Laplacian matrix of a surface (integrals of products of gradients) for its vertices `free` (n,)."""
+    """Laplacian matrix of a surface, with unknowns at the vertices in the mask `free` (n,)."""
 
     def __init__(self, surface: Triangulation, free: Bools) -> None:
         self.surface, self.free = surface, free
@@ -23,11 +23,11 @@ class Laplacian:
         self._diagonal = surface.gather(-weight - weight[:, PREVIOUS])[free]
 
     def factor(self, mass: Floats | float = 0.0) -> Factor:
-        """Return the factored matrix with `mass` (free,) added to its diagonal."""
+        """Return the factored matrix, after `mass` (free,) is added to its diagonal."""
         return self.pattern.factor(np.append(self._edges, self._diagonal + mass))
 
     def flow(self, values: Complexes) -> Complexes:
-        """Return the right-hand side for `values` (n,) at the fixed vertices, and 0 at the free vertices."""
+        """Return the right-hand side (free,) due to `values` (n,), which are 0 at the free vertices."""
         surface, weight = self.surface, self.surface.edge_weights
         corner = values[surface.triangles]
         flow = -weight * corner[:, NEXT] - weight[:, PREVIOUS] * corner[:, PREVIOUS]
@@ -35,6 +35,6 @@ class Laplacian:
 
 
 def solve_complex(factor: Factor, right: Complexes) -> Complexes:
-    """Return the complex solution (n,) of a real system."""
+    """Return the complex solution (n,) of a real factored system with the complex right-hand side `right`."""
     pairs = np.ascontiguousarray(right).view(np.float64).reshape(-1, 2)
     return np.asarray(factor.solve(pairs).view(np.complex128)[:, 0])

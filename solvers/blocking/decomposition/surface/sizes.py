@@ -25,7 +25,7 @@ CONE = 0.6  # cosine of the angle to the normal within which another wall counts
 
 @dataclass(frozen=True, eq=False)
 class WallSizes:
-    """Edge lengths at samples of all loops; each sample is the midpoint of an interval of its loop."""
+    """Target edge lengths at samples of all boundary loops; a sample is the midpoint of an interval."""
 
     largest: float  # largest size
     smallest: Floats
@@ -59,13 +59,13 @@ def usual_size(area: float, count: int) -> float:
 
 
 def wall_sizes(domain: Domain, count: int, finer: tuple[Floats, Floats] | None = None) -> WallSizes:
-    """Return edge lengths along the walls for about `count` nodes, in the domain's unit.
+    """Return target edge lengths along the walls for about `count` nodes, in the domain's unit.
 
-    They are ``h = min(h0, piece / 4, gap / 3.5, .45 radius)``, at least ``h0 / 25`` or 1/400 of the loop,
-    whichever is less. h0 is `usual_size`, the piece the length from corner to corner, the radius that of
-    curvature. The gap is the distance to the nearest wall within 53 degrees of the normal; the other wall at
-    a wide corner is ignored. `finer` are further points (m, 2) with prescribed sizes (m,). The gradient of
-    the sizes is at most 0.35.
+    They are ``h = min(h0, piece / 4, gap / 3.5, .45 radius)``, but at least ``h0 / 25`` or 1/400 of the loop,
+    whichever is less. Here h0 is `usual_size`, piece is the length of the wall between two corners, radius is
+    that of curvature, and gap is the distance to the nearest wall within 53 degrees of the normal. The other
+    wall at a wide corner is no gap. Further sizes (m,) are prescribed at points (m, 2) by `finer`. The
+    gradient of the sizes is at most 0.35.
     """
     largest = usual_size(domain.area, count)
     samples = [_sample(loop, largest) for loop in domain.loops]
@@ -129,10 +129,9 @@ def _own_size(samples: _Samples, largest: float) -> Floats:
 
 
 def place_nodes(domain: Domain, sizes: WallSizes) -> tuple[Indices, Floats]:
-    """Return loop (b,) and arc length (b,) of wall nodes, at equal steps of ∫ ds / h in each piece.
+    """Return loop (b,) and arc length (b,) of the wall nodes, spaced by the target edge lengths `sizes`.
 
-    Here h is the edge length in `sizes`, and a piece is a wall from corner to corner. Corners are nodes. A
-    piece has at least 2 edges, a loop without corners at least 8.
+    Corners are nodes. A wall between two corners has at least 2 edges, a loop without corners at least 8.
     """
     loops, arcs = [], []
     for number, loop in enumerate(domain.loops):

@@ -20,7 +20,7 @@ PREVIOUS = np.array([2, 0, 1])  # and before each
 
 @dataclass(frozen=True, eq=False)
 class Triangulation:
-    """Delaunay triangulation of a domain, constrained by its walls: triangles joined at their edges.
+    """Delaunay triangulation of a domain, constrained by its walls.
 
     Vertices on the walls come first, in their order along the walls.
     """
@@ -40,12 +40,12 @@ class Triangulation:
 
     @property
     def arrays(self) -> tuple[Indices, Indices, Indices]:
-        """Arguments of kernels."""
+        """Triangles, neighbours and edges in the neighbours, as the compiled functions take them."""
         return self.triangles, self.neighbours, self.neighbour_edge
 
     @cached_property
     def fans(self) -> tuple[Indices, Indices]:
-        """Offsets (n + 1,) and corners (3 t,); those at vertex v are corners[offsets[v] : offsets[v + 1]]."""
+        """Offsets (n + 1,) and corners (3 t,): corners[offsets[v] : offsets[v + 1]] are those at vertex v."""
         start, corners, reached = surface_fans(self.arrays, self.size)
         if reached != len(corners):
             raise SolverError("triangles that meet in a point only")
@@ -53,7 +53,7 @@ class Triangulation:
 
     @cached_property
     def edges(self) -> Complexes:
-        """(t, 3) edge i of each triangle as a complex number."""
+        """(t, 3) edges of each triangle as complex numbers; edge i begins at corner i."""
         z = complex_of(self.points[self.triangles])
         return np.asarray(z[:, NEXT] - z)
 
@@ -64,7 +64,7 @@ class Triangulation:
 
     @cached_property
     def angles(self) -> Floats:
-        """(t, 3) angles at the corners."""
+        """(t, 3) angles at the corners, in radians."""
         return np.asarray(angle(-self.edges[:, PREVIOUS] / self.edges))
 
     @cached_property
@@ -74,7 +74,7 @@ class Triangulation:
 
     @cached_property
     def walls(self) -> tuple[Indices, Indices]:
-        """Triangles and edges (w,) on walls."""
+        """For each edge on a wall, its triangle (w,) and its index (w,), 0 to 2, in the triangle."""
         triangles, edges = np.nonzero(self.neighbours < 0)
         return triangles, edges
 
@@ -101,12 +101,12 @@ class Triangulation:
 
     @cached_property
     def euler(self) -> int:
-        """Euler's number: 1 for a disc, 0 for an annulus."""
+        """Euler characteristic: 1 for a disc, 0 for an annulus."""
         inner = int((self.neighbours >= 0).sum()) // 2
         return self.size - inner - len(self.walls[0]) + len(self.triangles)
 
     def gather(self, corners: Floats) -> Floats:
-        """Return, for each vertex, the sum (n,) of the values `corners` (t, 3) at its corners."""
+        """Return, for each vertex, the sum (n,) of the values `corners` (t, 3) at the corners there."""
         return np.asarray(np.bincount(self.triangles.ravel(), corners.ravel(), self.size))
 
     def edge_size(self, vertices: Indices) -> Floats:

@@ -111,11 +111,10 @@ def triangulate(
 ) -> Triangulation:
     """Return a triangulation of a domain with about `count` nodes, or more if walls need short edges.
 
-    Nodes along the walls follow `wall_sizes`. Circumcentres of triangles that are too large are inserted, and
-    nodes are smoothed. `finer` are points (m, 2) with sizes (m,) around them. The same input and `seed` give
-    bitwise the same result.
+    Edges along walls have the lengths of `wall_sizes`. `finer` are points (m, 2) and the edge lengths (m,)
+    around them. The same input and `seed` give bitwise the same result.
 
-    Raises InputError: walls that are so close to each other that they cannot be distinguished.
+    Raises InputError if walls are so close to each other that they cannot be distinguished.
     """
     sizes = wall_sizes(domain, count, finer)
     frame = _Frame(domain)

@@ -15,9 +15,9 @@ SOME = 100  # number of quads whose images are searched for; the images of the o
 
 
 def images_of(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> Images:
-    """Return, for each mirror about which the quads of a mesh are symmetric, the image of each node.
+    """Return the mirrors about which the quads of a mesh are symmetric, and each node's image (n,) in them.
 
-    The `mirrors` are tried, by default all mirrors of the domain.
+    `mirrors` are those that are tried, by default all mirrors of the domain.
     """
     mirrors = mirrors_of(mesh.domain) if mirrors is None else mirrors
     images = []
@@ -31,12 +31,12 @@ def images_of(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> Images
 
 
 def node_images(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> list[Indices]:
-    """Return the results of `images_of` without the mirrors."""
+    """Return the indices (n,) of the nodes' images, for each mirror of `images_of`."""
     return [to for _, to in images_of(mesh, mirrors)]
 
 
 def agree(images: Images) -> bool:
-    """Return whether reflections of the nodes, one after another, give the rotations that mirrors give."""
+    """Return whether images are consistent: reflections in two mirrors must rotate the mesh onto itself."""
     if len(images) < 2:
         return True
     (_, one), (_, other) = images[:2]
@@ -49,10 +49,10 @@ def agree(images: Images) -> bool:
 
 
 def made_symmetric(mesh: QuadMesh, images: Images | None = None) -> QuadMesh:
-    """Return the mesh with each node averaged with its mirror images, by default those in all mirrors.
+    """Return the mesh with each node at the mean of itself and its mirror images.
 
-    Corners do not move. Only the first mirror is used if reflections in two mirrors give no rotation of the
-    mesh, as in a ring of an odd number of quads.
+    By default, the `images` are those in all mirrors. Only the first mirror is used if images do not `agree`,
+    as in a ring of an odd number of quads. Corners do not move.
     """
     images = images_of(mesh) if images is None else images
     if not agree(images):

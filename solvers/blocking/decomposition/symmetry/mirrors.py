@@ -25,7 +25,8 @@ _STEPS = 8  # of Newton's method for the nearest point of a curve
 class Mirror:
     """A mirror line through `centre` (2,) along the unit vector `along` (2,).
 
-    The image of the point of loop k at arc length s is the point of loop `loops[k]` at `sums[k]` - s.
+    The image of a point of boundary loop k at arc length s is on loop `loops[k]`, at arc length `sums[k]` -
+    s.
     """
 
     centre: Floats
@@ -38,13 +39,13 @@ class Mirror:
         return _images(points, self.centre, self.along)
 
     def ahead_and_left(self, points: Floats) -> tuple[Floats, Floats]:
-        """Return coordinates (...) of points (..., 2) about the centre: along the line, and to its left."""
+        """Return the distances (...) of points (..., 2) from the centre along the line, and to its left."""
         return along_and_across(points - self.centre, self.along)
 
 
 @lru_cache(maxsize=64)
 def mirrors_of(domain: Domain) -> tuple[Mirror, ...]:
-    """Return the mirrors of a domain, sorted by angle; the angle from each to the next is the same.
+    """Return the mirror lines of a domain, sorted by angle; the angles between neighbours are equal.
 
     The first mirror is along x or y if there is such a mirror. A circle counts as having four mirrors, a
     domain with periodic sides none.
@@ -77,7 +78,7 @@ def _all_about(domain: Domain, first: Mirror, count: int) -> tuple[Mirror, ...]:
 
 
 def mirror_about(domain: Domain, centre: Floats, along: Floats) -> Mirror | None:
-    """Return the mirror along a line; None if the domain deviates from symmetry by `SAME` extents or more."""
+    """Return the mirror along a line through `centre`; None if the domain is not symmetric about it."""
     middles, _ = _centroids(domain)
     apart = norms(_images(middles, centre, along)[:, None] - middles)
     apart[0, 1:] = apart[1:, 0] = np.inf  # the outer loop is its own image

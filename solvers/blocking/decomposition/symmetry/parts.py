@@ -28,7 +28,7 @@ Ray = tuple[Mirror, Floats]  # a mirror, and the direction (2,) of the ray on it
 
 @dataclass(frozen=True, eq=False)
 class LoopPart:
-    """A part of a loop of the whole domain, between two rays (halves of mirror lines); or the centre."""
+    """A part of a boundary loop between two rays (halves of mirror lines), or the point where rays meet."""
 
     loop: int  # index of the loop; -1 for the centre
     arcs: Floats  # (n,) ascending arc lengths
@@ -41,16 +41,17 @@ class LoopPart:
 
 @dataclass(frozen=True, eq=False)
 class DomainPart:
-    """A part of a domain.
+    """A part of a symmetric domain, from which mirror images make the whole.
 
     Parameters
     ----------
-    whole : the domain.
-    domain : the part; its outer loop begins on the first ray.
-    stretches, holes : walls of the part: parts of loops of the whole domain, and whole loops inside.
+    whole : the whole domain.
+    domain : the part as a domain; its outer loop begins on the first ray.
+    stretches : parts of loops of the whole domain that bound the part.
+    holes : indices of the loops of the whole domain inside the part.
     rays : the mirrors that bound the part.
-    copies : one entry for each copy that fills the whole domain: the mirrors in which this part is reflected,
-        one after another. The first entry is empty.
+    copies : for each copy in the whole domain, the mirrors in which the part is reflected, one after another.
+        The first entry is empty: the part itself.
     """
 
     whole: Domain
@@ -62,7 +63,7 @@ class DomainPart:
 
 
 def spans_between(loop: Loop) -> list[Span]:
-    """Return the spans of a part's outer loop from one corner with a single cell to the next.
+    """Return the spans (parts) of a loop between successive corners that have a single cell.
 
     Corners within a span have two cells.
     """
@@ -73,9 +74,9 @@ def spans_between(loop: Loop) -> list[Span]:
 
 
 def part_of(domain: Domain, mirrors: Sequence[Mirror]) -> DomainPart:
-    """Return the half to the left of one mirror, or the quarter to the left of two perpendicular mirrors.
+    """Return the half of a domain to the left of a mirror, or the quarter to the left of two mirrors.
 
-    Raises SolverError: a ray cuts a sharp corner.
+    Two mirrors must be perpendicular. Raises SolverError if a mirror cuts a sharp corner.
     """
     first, *others = mirrors
     if others:
@@ -88,9 +89,9 @@ def part_of(domain: Domain, mirrors: Sequence[Mirror]) -> DomainPart:
 
 
 def sector_of(domain: Domain, mirrors: Sequence[Mirror], start: int) -> DomainPart:
-    """Return the sector that begins at the mirror with index `start`; `mirrors` are sorted by angle.
+    """Return the sector between mirrors `start` and `start` + 2; `mirrors` are sorted by angle.
 
-    Raises SolverError: a ray cuts a sharp corner, or the centre is outside.
+    Raises SolverError if a mirror cuts a sharp corner, or if the centre is outside the domain.
     """
     count = len(mirrors)
     first, middle, last = (mirrors[k % count] for k in range(start, start + 3))
@@ -201,7 +202,7 @@ def _stretch(
 
 
 def with_copies(mesh: QuadMesh, part: DomainPart) -> QuadMesh:
-    """Return the mesh of the whole domain: copies of the mesh of a part; it may not conform at rays."""
+    """Return a mesh of the whole domain, copied from the mesh of a part; it may not conform at mirrors."""
     nodes, (loop, arc, on_ray) = mesh.nodes.copy(), _places_in_whole(mesh, part)
     ends = np.flatnonzero(on_ray)
     nearest = np.stack([np.abs(ray.ahead_and_left(nodes[ends])[1]) for ray in part.rays]).argmin(axis=0)

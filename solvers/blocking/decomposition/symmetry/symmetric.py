@@ -43,13 +43,12 @@ def symmetric_blocks(
 ) -> BaseComplex:  # fmt: skip
     """Return symmetric blocks of the domain of `blocks`, or `blocks` if no symmetric ones are about as good.
 
-    `worth` is how much worse the score of symmetric blocks may be. With three, or more than four, mirrors
-    through a centre, blocks symmetric about all of them are tried: the given blocks, then blocks made from
-    sectors. With two perpendicular mirrors, blocks symmetric about both are tried first, then about one of
-    them; blocks that are also symmetric about the two diagonals are preferred. If the given blocks are
-    symmetric, blocks made from a part of the domain replace them only if they are better and not more
-    numerous. If edge lengths are prescribed, the quad mesh that `unsized` returns, for equal lengths, is
-    tried last.
+    Their score may be worse by `worth`. If there are three mirrors or more than four, blocks symmetric about
+    all of them are tried: first the given blocks, then blocks made from a sector. If two mirrors are
+    perpendicular, blocks symmetric about both are tried first, then about one of them. Blocks that are also
+    symmetric about the two diagonals are preferred. Given blocks that are symmetric are replaced by blocks
+    made from a part of the domain only if these are better and not more numerous. `find` returns the mesh of
+    a part. `unsized` returns a mesh without prescribed edge lengths, which is tried last.
     """
     mesh, every = blocks.mesh, mirrors_of(blocks.mesh.domain)
     pair = every[:1] if len(every) % 2 else every[:: max(len(every) // 2, 1)]
@@ -135,11 +134,11 @@ def _symmetric(mesh: QuadMesh, mirrors: Sequence[Mirror]) -> tuple[QuadMesh, Ima
 
 
 def cut_on_mirrors(mesh: QuadMesh, images: Images, more: Bools | None = None) -> BaseComplex:
-    """Return the blocks of a mesh, also cut along mirrors through corners of the domain with two cells.
+    """Return the blocks of a mesh, cut so that the mirror image of a block side is again a block side.
 
-    A ring of quads is cut along a mirror too. The mirror image of a side of a block is therefore again a side
-    of a block. `more` (e,) is a mask of further edges along which blocks are cut. Raises SolverError: a ring
-    has no line on a mirror.
+    Blocks end at mirrors through corners of the domain with two cells. A ring of quads is cut at a mirror
+    too. Blocks also end at edges in the mask `more` (e,). Raises SolverError if a ring has no line on a
+    mirror.
     """
     blocks = base_complex(mesh, more)
     ring = bool(images) and any(len(distinct(block[[0, 0, -1], [0, -1, 0]])) < 3 for block in blocks.blocks)
