@@ -45,8 +45,8 @@ HOLE_CUT_OFF = 0.02  # fraction of a hole's area by which that of its cells may 
 def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
     """Return the multi-block grid of a domain, with layers if a first cell is given.
 
-    Raises InputError: loops that cross or touch, unknown names of walls, a layout of another domain;
-    SolverError: the decomposition fails; NoValidGridError: folded cells.
+    Raises InputError if loops cross or touch, a wall has an unknown name, or the layout is of another domain.
+    Raises SolverError if the decomposition fails. Raises NoValidGridError if cells are folded.
     """
 
     def fine(domain: Domain, timings: Timings) -> Layout:
@@ -63,7 +63,7 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
 def grid_of(
     shape: DomainShape, request: BlockRequest, fine_of: Callable[[Domain, Timings], Layout]
 ) -> Solution:
-    """Return the grid of the layout by `fine_of`, after a check. Raises InputError: see `make_blocks`."""
+    """Return the grid of the layout that `fine_of` makes of the domain. Raises as `make_blocks`."""
     begun = perf_counter()
     timings: Timings = {}
     domain, height = _checked(shape.domain, request), request.heights(shape.unit)
@@ -128,10 +128,9 @@ def _cut_off_of_holes(fine: Layout) -> str:
 
 
 def find_layout(shape: DomainShape, request: BlockRequest) -> Layout:
-    """Return the blocks of a domain.
+    """Return the blocks of a domain, by default with the number of cells of the quad mesh of `decompose`.
 
-    If the request has no number of cells, the quad mesh has the default number of `decompose`. Raises
-    InputError: see `make_blocks`. Raises SolverError: the decomposition fails.
+    Raises InputError as `make_blocks`; SolverError if the decomposition fails.
     """
     domain = _checked(shape.domain, request)
     if request.pitch is not None:
@@ -185,7 +184,7 @@ def _with_layers(
 
 
 def settings_of(request: BlockRequest, height: AtWalls) -> LayerSettings:
-    """Return the settings of the layers; `height` is the first-cell height, or a height for each wall."""
+    """Return the settings of the layers; `height` is the first-cell height, or one height for each wall."""
     from meshonet.solvers.layers.layer_settings import LayerSettings
 
     heights = height if isinstance(height, Mapping) else {}

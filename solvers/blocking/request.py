@@ -23,11 +23,11 @@ LARGEST_PITCH = 1e12  # largest pitch in the unit of the blade, so that squares 
 
 @dataclass(frozen=True)
 class BlockRequest(FirstCell):
-    """Options for the multi-block grid of a domain, checked on construction: fields of `GridRequest`.
+    """Options of the multi-block grid of a domain, checked on construction; others are as in `GridRequest`.
 
     Parameters
     ----------
-    cells : if `cells`, `cell_size` and `res` are all missing, it is `CELLS`, or `LAYERED_CELLS` with layers.
+    cells : number of cells. Without it, `cell_size` and `res`, it is `CELLS`, or `LAYERED_CELLS` with layers.
     res : number of cells along the longest extent of the domain.
     length : reference length of the Reynolds number; None is the extent of the bodies.
     walls : names of the parts of loops with layers; if empty, `Domain.layered_loops` have layers.
@@ -35,7 +35,7 @@ class BlockRequest(FirstCell):
     refine : how often all cells are halved. `cells`, `cell_size` and `res` apply to the coarsest grid of the
         family; `first_cell` and `growth` apply to the finest grid, which is the result.
 
-    Raises InputError: a value out of its range; parameters that need or exclude each other.
+    Raises InputError if a value is out of its range, or if parameters need or exclude each other.
     """
 
     cells: int | None = None
@@ -92,7 +92,7 @@ class BlockRequest(FirstCell):
 
     @property
     def layered(self) -> tuple[str, ...]:
-        """Names of the walls with layers; none stands for `Domain.layered_loops`."""
+        """Names of the walls with layers; if there are none, `Domain.layered_loops` have layers."""
         return self.by_wall or self.walls
 
     @property

@@ -16,7 +16,7 @@ NEAR_FOLDS = 5, 10, 20  # cells around folded ones that are optimised with them,
 
 
 def unfolded(layout: Layout, held: Bools) -> Layout:
-    """Return the layout with folded cells unfolded; nodes in `held` (n,) and aspect ratios do not change."""
+    """Return the layout with folded cells repaired if possible; nodes in the mask `held` (n,) do not move."""
     mesh = layout.mesh
     bad = smallest_jacobians(mesh.nodes, mesh.quads) <= 0.0
     if not bad.any():
@@ -35,6 +35,6 @@ def unfolded(layout: Layout, held: Bools) -> Layout:
 
 
 def with_more_cells(layout: Layout, times: int) -> Layout:
-    """Return the layout with `times` as many cells in each direction, unfolded if splines cross."""
+    """Return the layout with `times` as many cells in each direction; cells that fold are repaired."""
     fine = multiplied(layout, times)
     return unfolded(fine, fine.mesh.wall_nodes)

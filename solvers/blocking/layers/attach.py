@@ -14,12 +14,12 @@ from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """Lines that start at the nodes of a loop of a layout and lead out of the layout.
+    """Grid lines that start at the nodes of a boundary loop of a layout and lead out of the layout.
 
     Parameters
     ----------
     loop : index of the loop, the same in the layout's domain and in the extended one.
-    nodes : (k, m, 2) lines, in the order of `Places.along`; the first node of each is a node of the layout.
+    nodes : (k, m, 2) lines, sorted by the arc length of their first nodes, which are nodes of the layout.
     arcs : (k,) arc lengths on the loop of the extended domain at which the lines end.
     layers : whether the lines are layers that end at a wall; no optimisation moves layers.
     """
@@ -31,10 +31,10 @@ class Rows:
 
 
 def attach(layout: Layout, domain: Domain, rows: Sequence[Rows]) -> Layout:
-    """Return a layout in which each block that has a side on the loop of `rows` gets a new block there.
+    """Return the layout extended by `rows`: each block side on one of their loops gets a new block.
 
-    `domain` is the extended domain: it has the same loops, except that the loop of `rows` runs through the
-    ends of the lines.
+    The loops of the extended `domain` are those of the layout, except that the loops of `rows` run through
+    the ends of their lines.
     """
     mesh = layout.mesh
     nodes, places = [mesh.nodes], [replace(mesh.places, loop=mesh.places.loop.copy())]
@@ -76,10 +76,10 @@ def _places(rows: Rows, domain: Domain) -> Places:
 
 
 def beside(blocks: Sequence[Indices], position: Indices, count: int) -> list[Indices]:
-    """Return, for each block side that is on a loop, the indices (n,) of the side's nodes along the loop.
+    """Return, for each block side on a loop of `count` nodes, the positions (n,) of its nodes along the loop.
 
-    The indices of a side ascend by one. `position` has for each node its index along the loop, or a negative
-    number if the node is not on the loop. `count` is the number of nodes of the loop.
+    `position` gives, for each node of the mesh, its position along the loop; it is negative for nodes off the
+    loop. Along a side the positions ascend by one.
     """
     along = []
     for block in blocks:

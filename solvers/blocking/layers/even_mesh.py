@@ -40,11 +40,11 @@ _SLACK = 0.02  # radians by which corners beyond them may become worse
 
 
 def evened_mesh(mesh: QuadMesh, held: Bools, lines: GrowthLines, following: Indices = NO_PAIRS) -> QuadMesh:
-    """Return the mesh with nodes moved where the lengths of successive edges grow too fast.
+    """Return the mesh with nodes moved where the ratio of successive edges exceeds the limits of `lines`.
 
-    The nodes in the mask `held` (n,) are fixed. Each pair in `following` (k, 2) is a wall node and a node
-    that moves and rotates with it, so that first cells keep their heights. Nodes on loops slide along the
-    loops, except corners and nodes of periodic sides. Growth exceeds its limit where good angles require it.
+    Nodes in the mask `held` (n,) are fixed. Each pair in `following` (k, 2) is a wall node and a node that
+    moves and rotates with it, so that first cells keep their heights. Nodes on loops slide along the loops,
+    except corners and nodes of periodic sides. Ratios may exceed the limits where good angles require it.
     """
     sliding = mesh.wall_nodes & ~held & (mesh.places.cells == 0) & ~mesh.tied
     fixed = held | (mesh.wall_nodes & ~sliding)

@@ -18,10 +18,10 @@ from meshonet.solvers.layers.layer_settings import LayerSettings
 
 
 def finished(layout: Layout, settings: LayerSettings, held: Bools, following: Indices = NO_PAIRS) -> Layout:
-    """Return the layout with limited growth of its cells.
+    """Return the layout with folded cells unfolded, and with limited growth of its cells.
 
-    The nodes in the mask `held` (n,) are fixed; `following` (k, 2) are pairs of a node on a wall and a node
-    that moves with it. Raises NoValidGridError, with the position: cells are folded.
+    Nodes in the mask `held` (n,) are fixed. Each pair in `following` (k, 2) is a wall node and a node that
+    moves with it. Raises NoValidGridError, with the position, if cells stay folded.
     """
     inner = held.copy()
     for number in layout.layers:

@@ -15,7 +15,7 @@ from meshonet.kernels._native import line_neighbours
 
 @dataclass(frozen=True, eq=False)
 class GrowthLines:
-    """Pairs of consecutive edges along grid lines.
+    """Pairs of consecutive edges along grid lines, and the limits of their length ratios.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class GrowthLines:
 
     @classmethod
     def of(cls, mesh: QuadMesh, limit: float, factors: Floats | None = None) -> Self:
-        """Return all pairs of a mesh; each gets the limit `limit`.
+        """Return all pairs of a mesh; `limit` is the logarithm of the largest permitted ratio of each.
 
         If `factors` (e,) are given, edge lengths are multiplied by them before ratios are computed.
         """
@@ -47,11 +47,12 @@ class GrowthLines:
     def from_walls(
         cls, layout: Layout, walls: Bools, limit: float, elsewhere: float, sliding: Bools | bool = False
     ) -> Self:
-        """Return all pairs of a layout; `limit` holds along grid lines from `walls` and across block sides.
+        """Return all pairs of a layout, with limits (logarithms of ratios) that depend on the position.
 
-        `walls` (n,) is a mask of nodes. For other pairs, and at irregular vertices, the limit is `elsewhere`.
-        In blocks beside a wall, pairs parallel to it may have the ratio of the edges on the wall if that is
-        larger, and the wall nodes are not `sliding` (n,).
+        The limit is `limit` along grid lines that start at `walls`, a mask (n,) of nodes, and across block
+        sides. It is `elsewhere` for other pairs, and at irregular vertices. Pairs parallel to a wall, in the
+        blocks beside it, may have the ratio on the wall if that is larger, unless the wall nodes are
+        `sliding` (n,).
         """
         mesh, pairs = layout.mesh, cls.of(layout.mesh, elsewhere)
         nodes = pairs.nodes
@@ -83,16 +84,16 @@ class GrowthLines:
         return type(self)(self.nodes[which], self.limit[which], self.offset[which], self.begins[which])
 
     def growth(self, z: Complexes) -> Floats:
-        """Return the logarithms (k,) of the edge ratios for nodes at `z` (n,), plus the offsets."""
+        """Return the logarithms (k,) of the edge ratios, plus the offsets, for complex positions `z` (n,)."""
         before, after = self.edges(z)
         return np.asarray(log(modulus(after) / modulus(before)) + self.offset)
 
     def edges(self, z: Complexes) -> tuple[Complexes, Complexes]:
-        """Return the first and second edges (k,) of pairs as complex numbers, for nodes at `z` (n,)."""
+        """Return the first and second edges (k,) of pairs as complex numbers, for positions `z` (n,)."""
         return z[self.nodes[:, 1]] - z[self.nodes[:, 0]], z[self.nodes[:, 2]] - z[self.begins]
 
     def largest_at(self, mesh: QuadMesh, rows: list[Indices]) -> Floats:
-        """Return the largest |growth| (n,) at each node; on lines in `rows`, at least that of the start."""
+        """Return the largest |growth| (n,) at each node; lines (k, m) in `rows` keep that of their start."""
         growth = np.zeros(len(mesh.nodes))
         np.maximum.at(growth, self.nodes[:, 1], np.abs(self.growth(complex_of(mesh.nodes))))
         for table in rows:

@@ -20,7 +20,7 @@ _WINDOW = 4  # columns to either side over which lengths along fronts are averag
 def ring_metric(ring: Ring, settings: LayerSettings, factors: Floats | float = 1.0) -> SizeMetric:
     """Return the target sizes of the cells beyond the front (outer edge) of a ring of layers.
 
-    First cells have the height of the settings times `factors` (n,).
+    The first cells at the wall have the height of the settings times `factors` (n,).
     """
     points = ring.front.curve.points
     step = np.roll(points, -1, axis=0) - points
@@ -36,7 +36,7 @@ def ring_metric(ring: Ring, settings: LayerSettings, factors: Floats | float = 1
 def last_layers(
     thickness: Floats, rows: int, settings: LayerSettings, first: float | Floats | None = None
 ) -> Floats:
-    """Return the heights (n,) of the cells just beyond `rows` layers whose total is `thickness` (n,)."""
+    """Return the heights (n,) of the cells just beyond `rows` layers with this total `thickness` (n,)."""
     none = np.full_like(thickness, np.inf)
     arcs = layer_arcs(thickness, settings.first if first is None else first, none, rows, settings.constant)
     return np.asarray(settings.join * (arcs[:, -1] - arcs[:, -2]))
@@ -46,10 +46,10 @@ def ring_rows(
     mesh: QuadMesh, loop: int, ring: Ring, rows: int, settings: LayerSettings, inner: Floats,
     factors: Callable[[Floats], Floats] | None = None,
 ) -> Rows:  # fmt: skip
-    """Return the layers between the wall of a ring and the nodes on its front (their outer edge).
+    """Return the layers between the wall of a ring and the nodes of `mesh` on its front (their outer edge).
 
-    `inner` (k,) are the heights of the cells beyond the front. First cells have the height of the settings,
-    times `factors` at arc lengths (k,) of the wall if given.
+    `inner` (k,) are the heights of the cells beyond the front. First-cell heights are those of the settings,
+    multiplied by the values of `factors` at arc lengths (k,) of the wall if given.
     """
     order = mesh.places.along(loop)
     columns, starts = ring.columns(mesh.places.arc[order])
@@ -59,7 +59,7 @@ def ring_rows(
 
 
 def heights_inside(layout: Layout, loop: int) -> Floats:
-    """Return the lengths (k,) of edges from the nodes of a loop into the domain, in order of arc length."""
+    """Return the lengths (k,) of the edges from the nodes of a loop into the domain, sorted by arc length."""
     mesh, height = layout.mesh, np.zeros(len(layout.mesh.nodes))
     for table in layout.beside(mesh.places.loop == loop):
         side = table[:, 0]

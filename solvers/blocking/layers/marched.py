@@ -29,10 +29,10 @@ FEWEST_CELLS = 4.0  # smallest thickness of layers in first cells
 def marched(
     start: Floats, thickness: Floats, first: float, attempts: Sequence[MarchSettings]
 ) -> tuple[Floats | None, Bools]:
-    """Return levels (n, m, 2) and a mask of folded columns, for the best of several marches.
+    """Return the levels (n, m, 2) of the best of several marches, and a mask (n,) of its folded columns.
 
     The first level is the closed wall `start` (n, 2), with the domain on its left. The first cells have the
-    height `first`; the last level is at the distance `thickness` (n,). The levels are None if all marches
+    height `first`. The last level is at the distance `thickness` (n,). The levels are None if all marches
     overflow.
     """
     cells = cells_for_growth(first, float(thickness.max()), MARCH_GROWTH)
@@ -58,9 +58,9 @@ def fitted(
 ) -> Floats:  # fmt: skip
     """Return levels (n, m, 2) without folded cells, as thick as `thickness` where `room` (n,) permits it.
 
-    `arcs` (n,) are the arc lengths of the columns on the closed wall, whose total is `length`; `place`
-    returns the description of a column for messages. Raises InputError: a gap is too narrow for layers, or
-    every march folds at a wall.
+    `start` (n, 2) are the nodes of the closed wall, `arcs` (n,) their arc lengths, and `length` is its total
+    length. `place` returns, for messages, the position of a column as text. Raises InputError if a gap is too
+    narrow for layers, or if every march folds at a wall.
     """
     check_room(room, first, place)
     least = FEWEST_CELLS * first
@@ -84,7 +84,7 @@ def fitted(
 def check_room(room: Floats, first: float, place: Callable[[int], str]) -> None:
     """Raise InputError if `room` (n,) is too small for first cells of height `first`.
 
-    `room` is the gap times `GAP_PART`; `place` returns the description of column k for messages.
+    `room` is the gap times `GAP_PART`. `place` returns, for messages, the position of a column as text.
     """
     k = int(np.argmin(room))
     if room[k] < FEWEST_CELLS * first:
@@ -110,6 +110,6 @@ def _march(start: Floats, cells: int, first: float, ratios: Floats, settings: Ma
 
 
 def folded_columns(levels: Floats) -> Bools:
-    """Return a mask (n,) of the columns of cells that have a folded corner; `levels` (n, m, 2) are closed."""
+    """Return a mask (n,) of the columns with a folded cell; each level in `levels` (n, m, 2) is closed."""
     cells = ring_of(np.concatenate([levels, levels[:1]])).transpose(1, 2, 0, 3)
     return np.asarray((corner_jacobians(cells.reshape(-1, 4, 2)) <= 0.0).reshape(len(levels), -1).any(axis=1))

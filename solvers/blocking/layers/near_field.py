@@ -30,10 +30,10 @@ GROWTH = 1.18  # of cells in rows to the far field
 
 @dataclass(frozen=True, eq=False)
 class NearField:
-    """A circle around the bodies, and the outer loop in polar coordinates about its centre.
+    """A circle around the bodies, and the outer loop in polar coordinates about the circle's centre.
 
-    `angles` (n,) ascend over one turn; `radii` (n,) and `arcs` (n,) are the radius and the arc length of the
-    outer loop at each.
+    `angles` (n,) ascend over one turn. For each angle, `radii` (n,) and `arcs` (n,) are the radius and the
+    arc length of the outer loop.
     """
 
     circle: Loop
@@ -46,7 +46,7 @@ class NearField:
 
     @classmethod
     def of(cls, domain: Domain) -> Self | None:
-        """Return the near field of a domain; None unless its outer loop is smooth, far and star-shaped."""
+        """Return the near field of a domain; None if its outer loop is not smooth, far and star-shaped."""
         outer = domain.loops[0]
         if len(domain.loops) < 2 or outer.corners:
             return None
@@ -84,7 +84,7 @@ class NearField:
     def rows(self, mesh: QuadMesh, heights: Floats, settings: LayerSettings) -> Rows:
         """Return straight rows from the nodes of the circle, loop 0 of `mesh`, to the outer loop.
 
-        Cells grow by a ratio of at most `GROWTH` from `heights` (k,), those of the cells inside the circle.
+        `heights` (k,) are those of the cells just inside the circle; outside, cells grow by at most `GROWTH`.
         """
         order = mesh.places.along(0)
         start = mesh.nodes[order]

@@ -46,11 +46,11 @@ def feature_sizes(domain: Domain) -> SizeMetric:
 def found_outside(
     rest: Domain, fronts: Collection[int], timings: Timings | None = None, symmetric: bool = True
 ) -> Layout:
-    """Return the blocks of a domain; the loops with indices `fronts` are fronts (outer edges) of layers.
+    """Return the blocks of the domain `rest` outside layers; the loops `fronts` are outer edges of layers.
 
     If `symmetric`, a symmetric domain gets symmetric blocks.
 
-    Raises SolverError: no blocks are found; InputError: walls or fronts nearly touch.
+    Raises SolverError if no blocks are found; InputError if walls or fronts nearly touch.
     """
     plain = rest if symmetric and mirrors_of(rest) else replace(rest, loops=tuple(map(_smooth, rest.loops)))
     sizes = feature_sizes(plain)
@@ -64,10 +64,10 @@ def found_outside(
 
 
 def taken_outside(layout: Layout, rest: Domain, fronts: Collection[int]) -> Layout:
-    """Return `layout` transferred to the domain `rest`; its loops `fronts` are the outer edges of layers.
+    """Return `layout` transferred to the domain `rest`, whose loops `fronts` are the outer edges of layers.
 
-    Raises InputError: as `carried_over`; the layout has layers around other loops, or no layers around walls
-    with sharp corners.
+    Raises InputError if the domains differ in kind (see `carried_over`), if the layout has layers around
+    other loops, or if it has no layers around a wall with sharp corners.
     """
     taken = carried_over(layout, rest)
     places = taken.mesh.places

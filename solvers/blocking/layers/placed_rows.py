@@ -25,7 +25,7 @@ _STEPS = 50  # of bisection, to round-off
 
 
 def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings) -> int:
-    """Return the number of layers that fill a row of blocks, in most columns, without growing too fast."""
+    """Return how many layers a row of blocks needs so that they do not grow too fast in most columns."""
     alone = rows.across[np.nonzero(rows.across == row)[0]].min(axis=1) < 0  # blocks of no other row
     columns = np.concatenate(list(compress(rows.columns(layout, row), alone)))
     first, extra = settings.first, settings.constant - 1
@@ -39,9 +39,9 @@ def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings)
 
 
 def with_layers(layout: Layout, rows: WallRows, settings: Sequence[LayerSettings]) -> Layout:
-    """Return a fine layout with layers in rows of blocks at walls; nodes move along the lines across a row.
+    """Return a fine layout whose nodes are distributed into layers, along the lines across rows at walls.
 
-    `settings` has one entry per row. First cells have exactly the given height; heights grow to that of the
+    `settings` has one entry per row. First cells have exactly the given height. Heights grow to that of the
     cells beyond the layers.
     """
     mesh = layout.mesh
@@ -69,7 +69,7 @@ def with_layers(layout: Layout, rows: WallRows, settings: Sequence[LayerSettings
 
 
 def held_nodes(layout: Layout, rows: WallRows, settings: LayerSettings, sheets: int) -> tuple[Bools, Indices]:
-    """Return a mask (n,) of the fixed nodes in rows, and pairs (k, 2) of nodes that move together.
+    """Return a mask (n,) of the fixed nodes in rows of layers, and pairs (k, 2) of nodes that move together.
 
     Each pair is a node on a wall and a node of the first cells above it. At corners, and in the first
     `sheets` rows (those around sharp edges), both nodes are fixed instead.

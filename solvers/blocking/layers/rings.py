@@ -31,16 +31,16 @@ _SAMPLES = 2000  # points of a wall from which distances are measured
 
 @dataclass(frozen=True, eq=False)
 class Ring:
-    """Layers around a loop.
+    """Layers around a boundary loop.
 
     Parameters
     ----------
     wall : the loop.
-    arcs : (n,) ascending arc lengths at which the columns of `levels` start. If the wall has corners, the
+    arcs : (n,) ascending arc lengths on the wall at which the columns start. If the wall has corners, the
         first column starts at one.
-    levels : (n, m, 2) nodes from the wall (0) to the front, the outer edge of the layers (m - 1).
-    front : loop along the last level, with one point per column, and corners of two cells where the wall has
-        corners.
+    levels : (n, m, 2) nodes of each column, from the wall to the front (the outer edge of the layers).
+    front : loop along the last level. It has one point per column, and a corner with two cells where the wall
+        has a corner.
     """
 
     wall: Loop
@@ -56,8 +56,8 @@ class Ring:
     def columns(self, places: Floats) -> tuple[Floats, Floats]:
         """Return lines (k, m, 2) from the wall to the outer edge, and the arc lengths (k,) of their starts.
 
-        `places` (k,) are the arc lengths, on the outer edge, of the ends of the lines. Lines are interpolated
-        by cubics through four columns, but never across a corner.
+        The lines end at the arc lengths `places` (k,) on the outer edge. They are interpolated by cubics
+        through four columns, but never across a corner.
         """
         n = len(self.arcs)
         knots = np.append(self.front.curve.knots, self.front.length)
@@ -79,7 +79,7 @@ class Ring:
 
     @cached_property
     def along(self) -> Measures:
-        """Arc lengths of corresponding points: on the outer edge, the wall, the level next to the wall."""
+        """Arc lengths of corresponding points on the outer edge, the wall, and the level next to the wall."""
         n = len(self.arcs)
         index = np.arange(FINER * n + 1) / FINER
         knots = np.append(self.front.curve.knots, self.front.length)
@@ -111,12 +111,12 @@ def march_ring(
     domain: Domain, number: int, first: float, thickness: float, largest: float,
     mirrors: Sequence[Mirror] = (), before: Ring | None = None, room: Floats | None = None,
 ) -> Ring:  # fmt: skip
-    """Return the ring around a loop of a domain, as thick as `thickness` where there is room.
+    """Return the ring of layers around loop `number`, as thick as `thickness` where there is room.
 
-    `first` is the height of first cells, `largest` the largest length of cells along the wall, both in the
-    domain's unit. The ring is symmetric about `mirrors` of the loop. If given, `room` (n,) limits its
-    thickness at the columns of the ring `before`. Raises InputError, with the position: no layer fits in a
-    gap, or every march folds at a wall.
+    `first` is the height of first cells, `largest` the greatest length of cells along the wall, both in the
+    domain's unit. The ring is symmetric about `mirrors` of the loop. If `room` (n,) is given, it limits the
+    thickness at the columns of the ring `before`. Raises InputError, with the position, if no layer fits in a
+    gap, or if every march folds at a wall.
     """
     loop = domain.loops[number]
     own = [mirror for mirror in mirrors if mirror.loops[number] == number]
@@ -152,7 +152,7 @@ def march_ring(
 
 
 def room_between(rings: Mapping[int, Ring]) -> dict[int, Floats]:
-    """Return the largest thickness (n,), at each column, of each ring that would hit another ring.
+    """Return the permitted thickness (n,) at the columns of each ring that is too close to another, by loop.
 
     Rings may collide although walls do not face each other, because columns fan out around sharp edges.
     """
@@ -174,7 +174,7 @@ def room_between(rings: Mapping[int, Ring]) -> dict[int, Floats]:
 
 
 def mirrored(ring: Ring, loop: Loop, mirror: Mirror, total: float) -> Ring:
-    """Return the mirror image of a ring, around `loop`; `total` is the ring's entry in `Mirror.sums`."""
+    """Return the mirror image of a ring; it is around `loop`, whose entry in `mirror.sums` is `total`."""
     arcs = _at_corners(loop, np.mod(total - ring.arcs[::-1], loop.length))
     levels = mirror.images(ring.levels[::-1])
     levels[:, 0] = loop.at(arcs)
@@ -208,9 +208,10 @@ def _ring(loop: Loop, arcs: Floats, levels: Floats) -> Ring:
 
 
 def column_weights(index: Floats, low: Indices, high: Indices) -> tuple[Floats, Indices]:
-    """Return the weights (k, 4) of four columns for each fractional `index` (k,), and the first column (k,).
+    """Return weights (k, 4) of columns for interpolation at fractional `index` (k,), and first columns (k,).
 
-    Columns outside of `low` to `high` (k,), those at the nearest corners, have zero weights.
+    Each interpolation uses four columns. Columns before `low` (k,) or beyond `high` (k,), which are at the
+    nearest corners, have zero weights.
     """
     first = np.clip(index.astype(np.intp) - 1, low, np.maximum(high - 3, low))
     width = np.minimum(high - first, 3)

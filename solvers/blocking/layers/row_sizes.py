@@ -32,7 +32,7 @@ AROUND_CORNER = 2.5
 
 @dataclass(frozen=True, eq=False)
 class RowSizes:
-    """Sizes along a loop, at points on and between its parts with layers.
+    """Cell sizes at points along a boundary loop, of which some parts have layers.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class RowSizes:
 
     @classmethod
     def of(cls, domain: Domain, number: int, stretches: Sequence[Stretch], settings: LayerSettings) -> Self:
-        """Return the sizes along `stretches` (parts) of a loop; without any, along the whole loop."""
+        """Return the sizes along loop `number`, whose parts `stretches` (by default all) have layers."""
         loop = domain.loops[number]
         arcs, length = sizes_by_bend(loop, loop.length / COLUMNS, TURN)
         gap = _gaps(domain, number, arcs)
@@ -70,7 +70,7 @@ class RowSizes:
     def thickness(self, scale: float, settings: LayerSettings) -> Floats:
         """Return the thickness (n,) of the layers, whose cells grow until they are square or fill the gap.
 
-        `scale`, in all methods, is a factor on the cell lengths along the wall.
+        In all methods, `scale` is a factor on the cell lengths along the wall.
         """
         last = scale * self.length * settings.growth
         full = np.maximum((last - self.first) / (settings.growth - 1.0), THINNEST * self.first)
@@ -88,7 +88,7 @@ class RowSizes:
         return edge + SPREAD * away
 
     def rows(self, scale: float, settings: LayerSettings) -> int:
-        """Return the approximate number of layers where first cells have the height of `settings`."""
+        """Return the approximate number of layers at points whose first-cell height is that of `settings`."""
         on = self.on & (self.first == settings.first)
         return settings.rows(float(self.thickness(scale, settings)[on if on.any() else self.on].max()))
 
@@ -99,7 +99,7 @@ class RowSizes:
             check_room(room, float(first), lambda k: place(self.loop, self.arcs[k]))
 
     def metric(self, scale: float, settings: LayerSettings) -> SizeMetric:
-        """Return the sizes of cells beyond the layers."""
+        """Return the target sizes of the cells beyond the layers."""
         on, along = self.on, np.maximum(scale * self.length, self.first)
         thick, normals = self.thickness(scale, settings), turned_left(self.loop.tangent(self.arcs))
         across = np.minimum(last_layers(thick, self.rows(scale, settings), settings, self.first), along)
@@ -107,7 +107,7 @@ class RowSizes:
         return SizeMetric(points[on], normals[on], across[on], along[on], np.inf)
 
     def wake_metric(self, wake: Floats, scale: float, settings: LayerSettings) -> SizeMetric:
-        """Return the sizes of cells next to a wake (k, 2), a line that begins at the sharp edge."""
+        """Return the target sizes of cells next to a wake (k, 2), a line that begins at the sharp edge."""
         tangent = np.gradient(wake, axis=0)
         normals = turned_left(tangent) / np.hypot(*tangent.T)[:, None]
         away = np.hypot(*(wake - wake[0]).T)

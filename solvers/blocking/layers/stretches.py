@@ -20,7 +20,7 @@ class Stretch:
     Parameters
     ----------
     loop : index of the loop.
-    first, last : indices of the corners among those of the loop; equal if it is the whole loop.
+    first, last : indices of its start and end among the corners of the loop; equal for the whole loop.
     """
 
     loop: int
@@ -28,12 +28,12 @@ class Stretch:
     last: int
 
     def span(self, loop: Loop) -> tuple[float, float]:
-        """Return arc lengths of start and end; the end is larger, if needed by the loop's whole length."""
+        """Return the arc lengths of start and end; the end is increased by the loop's length if necessary."""
         begin, end = (float(loop.corner_arcs[k]) for k in (self.first, self.last))
         return begin, end if end > begin else end + loop.length
 
     def names(self, loop: Loop) -> tuple[str, ...]:
-        """Return the names of its parts between corners."""
+        """Return the names of the parts between corners that make up the stretch."""
         count = len(loop.corners)
         parts = range(self.first, self.first + ((self.last - self.first - 1) % count) + 1)
         return tuple(loop.names[k % len(loop.names)] for k in parts)
@@ -43,9 +43,8 @@ def layered_walls(domain: Domain, names: Collection[str] = ()) -> tuple[list[int
     """Return the indices of the loops with layers all around, and the parts of other loops with layers.
 
     `names` are the walls with layers. Without names, `Domain.layered_loops` have layers, except parts whose
-    names mean no wall. Layers continue along an axis or symmetry line that continues a wall. Raises
-    InputError, with the position: no boundary has this name; layers would end where the boundary is straight
-    or at a reflex corner.
+    names stand for no wall. Layers continue along an axis or symmetry line that continues a wall. Raises
+    InputError if no wall has layers, or if layers would end where the boundary is straight or turns away.
     """
     whole: list[int] = []
     stretches: list[Stretch] = []

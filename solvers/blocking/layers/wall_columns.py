@@ -19,10 +19,10 @@ _RESOLVED = 0.01  # smallest length of a cell at a corner over the distance of s
 
 
 def wall_columns(loop: Loop, largest: float, sums: Sequence[float] = ()) -> Floats:
-    """Return the ascending arc lengths (n,) of columns around a loop; each corner gets a column.
+    """Return the ascending arc lengths (n,) at which columns of layers start; each corner has a column.
 
-    `largest` is the largest distance between neighbouring columns. For each c in `sums`, the mirror image of
-    the column at arc length s is the column at c - s.
+    `largest` is the greatest distance between neighbouring columns. For each c in `sums`, columns are
+    symmetric: the mirror image of the column at arc length s is the column at c - s.
     """
     arcs = np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs)
     arcs = distinct(np.append(arcs, _beside_corners(loop, largest)))
@@ -53,7 +53,7 @@ def wall_columns(loop: Loop, largest: float, sums: Sequence[float] = ()) -> Floa
 
 
 def nearest_arc(arcs: Floats, arc: float, length: float) -> int:
-    """Return the index in `arcs` (n,) of the arc length nearest to `arc`; the curve is closed."""
+    """Return the index in `arcs` (n,) of the arc length nearest to `arc`, on a closed curve of a length."""
     off = (arcs - arc) / length
     return int(np.abs(off - np.round(off)).argmin())
 

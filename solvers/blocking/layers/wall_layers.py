@@ -66,10 +66,11 @@ class WallLayers:
         cls, domain: Domain, loops: Sequence[int], settings: LayerSettings,
         stretches: Sequence[Stretch] = (), sheets: Sequence[int] = (),
     ) -> Self:  # fmt: skip
-        """Return the layers of a domain: rings around `loops`, rows along `stretches`, rows around `sheets`.
+        """Return the layers of a domain: rings around `loops`, rows of blocks at `stretches` and `sheets`.
 
-        `sheets` are loops with one sharp edge, whose layers continue along the wake. Raises InputError: too
-        little room for layers; a wall at which layers fold.
+        `loops` and `sheets` are indices of loops. Sheets have one sharp edge, and their layers continue along
+        the wake. `stretches` are parts of loops. Raises InputError if there is too little room, or if layers
+        fold.
         """
         rings = rings_around(domain, loops, settings)
         numbers = sorted({*sheets, *(stretch.loop for stretch in stretches)})
@@ -88,28 +89,28 @@ class WallLayers:
 
     @cached_property
     def mirrors(self) -> tuple[Mirror, ...]:
-        """Mirrors of the domain outside the layers; none if the domain has none."""
+        """Mirrors of the domain outside the layers; none if the whole domain has none."""
         return mirrors_of(self.rest) if mirrors_of(self.domain) else ()
 
     def of_ring(self, number: int) -> LayerSettings:
-        """Return the layers of the ring around a loop."""
+        """Return the settings of the layers in the ring around loop `number`."""
         return self.settings.at(self.domain.loops[number].names)
 
     @cached_property
     def of_rows(self) -> tuple[LayerSettings, ...]:
-        """Layers of the rows along sheets and stretches."""
+        """Settings of the layers in each row of blocks: rows around sheets, then rows along stretches."""
         loops = self.domain.loops
         names = [loops[k].names for k in self.sheets] + [s.names(loops[s.loop]) for s in self.stretches]
         return tuple(map(self.settings.at, names))
 
     def symmetric(self, layout: Layout) -> Layout:
-        """Return the layout outside the layers; its nodes are made symmetric if its quads are symmetric."""
+        """Return the layout outside the layers, with symmetric nodes if its quads are symmetric."""
         return replace(layout, mesh=made_symmetric(layout.mesh, images_of(layout.mesh, self.mirrors)))
 
     def is_free(self, number: int, mesh: QuadMesh, wake: Sequence[int]) -> bool:
         """Return whether a wake reaches the outer loop and has room for layers on its whole length.
 
-        `wake` are the indices in `mesh` of its nodes from the sharp edge of loop `number` on.
+        `wake` are the indices of its nodes in `mesh`, beginning at the sharp edge of loop `number`.
         """
         return bool(mesh.places.loop[wake[-1]] == 0) and self.has_room(number, mesh.nodes[wake])
 
@@ -142,8 +143,8 @@ class WallLayers:
     ) -> SizeMetric:
         """Return the target cell sizes outside the layers, at most `size` if given.
 
-        Next to layers, sizes are `scale` times the cell lengths along the wall. `wakes` are lines (k, 2); the
-        key is the index of the loop that the wake leaves.
+        Next to layers, sizes are `scale` times the cell lengths along the wall. `wakes` are lines (k, 2), by
+        the index of the loop at which they begin.
         """
         scale = 1.0 if size else scale
         parts = [sizes.metric(scale, self.settings) for sizes in self.sizes.values()]
@@ -162,7 +163,7 @@ class WallLayers:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Functions whose steps between nodes should grow slowly on loops around layers, by loop index."""
+        """Functions along loops around layers whose steps between nodes should grow slowly, by loop index."""
         measures = {k: ring.along for k, ring in self.rings.items()}
         if self.near is not None:
             ends = np.array([0.0, self.near.circle.length])
@@ -170,11 +171,11 @@ class WallLayers:
         return measures
 
     def ring_rows(self, number: int) -> int:
-        """Return the number of layers of the ring around a loop."""
+        """Return the number of layers in the ring around loop `number`."""
         return self.of_ring(number).rows(float(self.rings[number].thickness.max()))
 
     def attached_cells(self, chords: Chords, counts: Indices) -> int:
-        """Return the number of cells in rings and in rows to the far field, for cell `counts` of chords."""
+        """Return the number of cells in rings and in rows to the far field, if chords have `counts` cells."""
         along = chords.along_loops(counts).tolist()
         total = sum(along[number] * self.ring_rows(number) for number in self.rings)
         if self.near is not None:
@@ -184,9 +185,9 @@ class WallLayers:
 
 
 def rings_around(domain: Domain, loops: Sequence[int], settings: LayerSettings) -> dict[int, Ring]:
-    """Return the rings around `loops` of a domain; the keys are the indices of the loops.
+    """Return the rings of layers around `loops` of a domain, by the index of the loop.
 
-    Raises InputError: too little room for layers; a wall at which layers fold.
+    Raises InputError if there is too little room for layers, or if layers fold at a wall.
     """
     mirrors, rings = mirrors_of(domain), dict[int, Ring]()
     rooms, tight = dict[int, Floats](), dict[int, Floats]()
@@ -222,7 +223,7 @@ def _sizes(domain: Domain, number: int) -> tuple[float, float]:
 
 @dataclass(frozen=True, eq=False)
 class Counts:
-    """Numbers of cells along the chords of a coarse layout, and the refinement to the fine one.
+    """Numbers of cells along the chords (rows of blocks) of a coarse layout, and the factors to the fine one.
 
     Parameters
     ----------
@@ -230,9 +231,8 @@ class Counts:
     stride : factor from the counts of the first optimisation to those of the second; 1 if there is only one.
     times : factor from the counts of the last optimisation to the final counts.
     scale : factor by which the cell lengths along walls are multiplied.
-    metric : target sizes.
-    layers : (rows,) ratio of the number of layers of each row to the number that the thickness of the row
-        requires, from the last optimisation, averaged with the ratio before.
+    metric : target cell sizes.
+    layers : (rows,) factors that correct the number of layers of each row, from the last optimisations.
     """
 
     coarse: Indices
@@ -246,9 +246,9 @@ class Counts:
 def wanted_counts(
     walls: WallLayers, rows: WallRows, chords: Chords, cells: int, size: float, before: Counts | None
 ) -> Counts:
-    """Return counts for about `cells` cells in total, or for cells of the given size.
+    """Return counts for about `cells` cells in total or, if `cells` is 0, for cells of the length `size`.
 
-    During the optimisation each row has `ROWS` cells across. `before` are the previous counts.
+    During the optimisation each row of layers has `ROWS` cells across. `before` are the previous counts.
     """
     multiple, row = walls.settings.multiple, rows.of_chords(chords)
     wakes = rows.wakes(chords.layout)

@@ -32,13 +32,13 @@ Edge = tuple[int, int]
 
 @dataclass(frozen=True, eq=False)
 class WallRows:
-    """Rows of blocks along the walls of a layout, and the one or two rows that each block belongs to.
+    """Rows of blocks along the walls of a layout; each block belongs to one or two rows, or to none.
 
     Parameters
     ----------
     loops : for each row, the index of the loop along which it goes.
-    across : (b, 2) index of the row, or -1, whose thickness a block spans from south to north, and from west
-        to east; also valid for a refined layout.
+    across : (b, 2) index of the row that a block crosses from south to north, and from west to east; -1 for
+        none. Refinement does not change it.
     back : (b, 2) whether this direction of the block leads from the outer edge of the row to the wall.
     """
 
@@ -47,7 +47,7 @@ class WallRows:
     back: Bools
 
     def of_chords(self, chords: Chords) -> Indices:
-        """Return the index (chords,) of the row whose thickness the edges of each chord span, or -1."""
+        """Return the index (chords,) of the row that the edges of each chord cross, or -1."""
         row = np.full(chords.count, -1, dtype=np.intp)
         row[chords.chord[chords.sides[:, 2]]] = self.across[:, 0]
         row[chords.chord[chords.sides[:, 0]]] = self.across[:, 1]
@@ -71,7 +71,7 @@ class WallRows:
         return float(np.abs(along.growth(complex_of(layout.mesh.nodes))).max())
 
     def wakes(self, layout: Layout) -> dict[int, Floats]:
-        """Return the wakes (k, 2) of the loops that have a row around them; keys are the loops' indices."""
+        """Return the wakes (k, 2) of the loops that have a row around them, by the index of the loop."""
         mesh, lines = layout.mesh, {}
         for row, loop in enumerate(self.loops):
             base = distinct(np.concatenate([table[:, 0] for table in self.columns(layout, row)]))
@@ -89,7 +89,7 @@ def has_sharp_edge(loop: Loop) -> bool:
 
 
 def wake_of(mesh: QuadMesh, number: int) -> list[int]:
-    """Return the nodes of the grid line from the sharp edge of a loop to a boundary."""
+    """Return the nodes of the grid line from the sharp edge of loop `number` to a boundary."""
     half, places = half_edges(mesh), mesh.places
     edge = int(np.argmax((places.loop == number) & (places.cells == 4)))
 
@@ -109,10 +109,11 @@ def wake_of(mesh: QuadMesh, number: int) -> list[int]:
 def with_wall_rows(
     layout: Layout, stretches: Sequence[Stretch], sheets: Sequence[int] = (), mirrors: Sequence[Mirror] = ()
 ) -> tuple[Layout, WallRows]:
-    """Return a layout with rows of quads along `stretches` (parts of loops) and `sheets`, and these rows.
+    """Return the layout with rows of quads added along `stretches` and around `sheets`, and these rows.
 
-    `sheets` are loops with a sharp edge. If the quads of the layout are symmetric about `mirrors`, the blocks
-    are too. Raises SolverError: the lines of the mesh do not bound blocks.
+    `stretches` are parts of loops, `sheets` indices of loops with a sharp edge. If the quads of the layout
+    are symmetric about `mirrors`, the blocks are too. Raises SolverError if lines of the mesh do not bound
+    blocks.
     """
     mesh = layout.mesh
     rungs: list[Edge] = []  # an edge across each row, from wall to front
