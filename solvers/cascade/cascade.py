@@ -39,10 +39,10 @@ class Cascade:
 
     Parameters
     ----------
-    blade : loop of the blade, with the passage on its left.
+    blade : loop (closed curve) of the blade, with the passage on its left.
     pitch : displacement from one blade to the next.
     inlet, outlet : lengths of the passage upstream and downstream of the blade, in axial chords.
-    settings : layers at the blade; the default is a few rows of equal cells.
+    settings : layers at the blade; by default a few layers that grow slowly.
     name : name of the blade.
     near : distances upstream and downstream of the blade, in pitches, beyond which grid lines are straight.
     centre : point inside the blade from which axial distances are measured; the default is the point farthest
@@ -70,7 +70,7 @@ class Cascade:
 
     @property
     def opposite(self) -> bool:
-        """Whether the pitch points to the right of the flow direction, which is that of x."""
+        """Whether the pitch points to the right of the flow, which goes towards larger x."""
         return self.pitch[1] < 0.0 or (self.pitch[1] == 0.0 and self.pitch[0] > 0.0)
 
     @property
@@ -99,7 +99,7 @@ class Cascade:
 
     @cached_property
     def blades(self) -> Domain:
-        """The blade and its neighbours on both sides. Raises InputError: they intersect."""
+        """The blade and its neighbours on both sides. Raises InputError if they intersect."""
         shift = pairs_of(np.array([-self.left, self.left]))
         beside = [_moved(self.blade, each) for each in shift]
         farthest = max(float(np.abs(loop.curve.points).max()) for loop in (self.blade, *beside))
@@ -119,7 +119,7 @@ class Cascade:
 
     @property
     def kept(self) -> float:
-        """Largest thickness of the layers, divided by `thickness`; below 1 if thicker layers had folded."""
+        """Greatest thickness of the layers, divided by `thickness`; below 1 if thicker layers fold."""
         return min(float(self.ring.thickness.max()) / self.thickness, 1.0)
 
     @cached_property
@@ -137,11 +137,11 @@ class Cascade:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Functions whose steps between nodes should grow slowly around layers, by loop; {} without limit."""
+        """Functions along the layers' outer edge whose steps should grow slowly, by loop index; or {}."""
         return {BLADE: self.ring.along} if self.layers.limit else {}
 
     def factors_at(self, arcs: Floats) -> Floats:
-        """Return the factors (k,) at arc lengths (k,) of the blade."""
+        """Return the factors (k,) on the first-cell height at arc lengths `arcs` (k,) of the blade."""
         if self.factors is None:
             return np.ones(len(arcs))
         return np.interp(arcs, self.blade.curve.knots, self.factors, period=self.blade.length)
@@ -155,7 +155,7 @@ class Cascade:
 
     @cached_property
     def ends(self) -> tuple[float, float]:
-        """Lengths from the layers to inlet and outlet. Raises InputError: too short for the blocks."""
+        """Lengths from the layers to inlet and outlet. Raises InputError if they are too short for blocks."""
         chord, (before, behind) = self.chord, self.reach
         for length, name, chords in ((before, "inlet", self.inlet), (behind, "outlet", self.outlet)):
             least = SHORTEST * abs(self.left)
@@ -189,7 +189,7 @@ class Cascade:
         return replace(sizes, points=points, normals=normals, across=across, along=along)
 
     def check_reach(self, cells: int | None, cell_size: float | None) -> None:
-        """Raise InputError if the passage needs far more than `cells`, or too many of `cell_size`."""
+        """Raise InputError if the passage needs far more than `cells`, or too many cells of `cell_size`."""
         largest = cell_size or abs(self.left) / ACROSS * COARSEST**0.5
         length = (1.0 + self.inlet + self.outlet) * self.chord
         most = MOST_CELLS if cell_size else min(MORE * (cells or CELLS), MOST_CELLS)

@@ -48,11 +48,11 @@ def cascade_layout(
     cascade: Cascade, *, cells: int | None = None, cell_size: float | None = None,
     timings: Timings | None = None,
 ) -> Layout:  # fmt: skip
-    """Return a fine layout of a passage with about `cells` cells, or `cell_size` far from the blade.
+    """Return a fine layout of a passage with about `cells` cells, or cells of `cell_size` far from the blade.
 
     The outer loop consists of periodic1, outlet, periodic2 (periodic1 moved by the pitch) and inlet. Raises
-    InputError: too little room for layers, inlet or outlet; far more cells needed than requested;
-    NoValidGridError: folded cells.
+    InputError if there is too little room for layers, inlet or outlet, or if far more cells are needed than
+    requested. Raises NoValidGridError if cells are folded.
     """
     timings = {} if timings is None else timings
     cascade.check_reach(cells, cell_size)
@@ -103,10 +103,10 @@ def _outside(
 def passage_optimum(
     layout: Layout, iterations: int, metric: SizeMetric | None, held: Bools | None = None
 ) -> Layout:
-    """Return the layout of a passage with optimised nodes; `metric` has target cell sizes.
+    """Return the layout of a passage with nodes optimised for the target cell sizes `metric`.
 
-    The cut is the grid line at which the passage repeats. Its two end nodes, and the nodes in the mask `held`
-    (n,), do not move.
+    Nodes in the mask `held` (n,), and the end nodes of the cut (the grid line at which the passage repeats),
+    do not move. Raises NoValidGridError if cells stay folded.
     """
     mesh = layout.mesh
     ends = (mesh.places.loop >= 0) & mesh.tied
@@ -134,7 +134,7 @@ def _rows(cascade: Cascade, layout: Layout, metric: SizeMetric) -> list[Rows]:
 
 
 def straight_rows(cascade: Cascade) -> list[tuple[int, float, float]]:
-    """Return loop index, length, and sign of the axial direction of the rows to inlet and outlet."""
+    """Return, for the rows to inlet and to outlet, loop index, length and sign of the axial direction."""
     passage = cascade.passage
     axial = passage.axial(passage.front.curve.points)
     before = cascade.ends[0] - float(axial.min() - passage.inlet)
@@ -144,7 +144,7 @@ def straight_rows(cascade: Cascade) -> list[tuple[int, float, float]]:
 
 
 def row_steps(first: float, length: float, largest: float) -> Floats:
-    """Return the nodes on a line from 0 to `length`; cells grow from `first` to about `largest`."""
+    """Return positions of nodes on a line, from 0 to `length`; cells grow from `first` to about `largest`."""
     cells = [min(first * ROW_GROWTH**0.5, length)]
     total = cells[0]
     while total < length - 0.5 * cells[-1]:
@@ -158,7 +158,7 @@ def row_steps(first: float, length: float, largest: float) -> Floats:
 def counts_of(
     cascade: Cascade, chords: Chords, cells: int | None, cell_size: float | None
 ) -> tuple[Indices, int, SizeMetric]:
-    """Return the coarse cell count of each chord, the factor to the final counts, and target cell sizes."""
+    """Return coarse cell counts (chords,) of chords, the factor to final counts, and target cell sizes."""
     sizes = cascade.metric
     wanted = WantedCounts(chords, sizes)
     if cell_size is not None:
@@ -184,9 +184,9 @@ def attached_cells(
     cascade: Cascade, chords: Chords, counts: Indices, metric: SizeMetric, layers: int | None = None,
     longest: Mapping[int, float] | None = None,
 ) -> int:  # fmt: skip
-    """Return the number of cells in the layers and in the rows to inlet and outlet, for `counts` of chords.
+    """Return the number of cells in the layers and in the rows to both ends, if chords have `counts` cells.
 
-    `layers` replaces the number of layers; `longest` are lower bounds of the lengths of rows, by loop index.
+    `layers` replaces the number of layers. `longest` are lower bounds of the lengths of rows, by loop index.
     """
     along = chords.along_loops(counts).tolist()
     total = along[BLADE] * (cascade.rows_of_layers if layers is None else layers)

@@ -15,8 +15,8 @@ from meshonet.solvers.stages import Timings
 def make_passage(shape: DomainShape, request: BlockRequest) -> Solution:
     """Return the grid of a passage; the blade is the only hole of the domain, the request has the pitch.
 
-    Raises InputError: see `make_blocks`; options that do not apply to cascades; NoValidGridError: folded
-    cells.
+    Raises InputError as `make_blocks`, and for options that do not apply to cascades. Raises NoValidGridError
+    if cells are folded.
     """
 
     def passage(domain: Domain, timings: Timings) -> Layout:

@@ -58,8 +58,9 @@ class Passage:
     ) -> Self:  # fmt: skip
         """Return the passage around a closed front (the blade, or the outer edge of its layers).
 
-        Blocks end at the distances `near` from the front, in pitches, or `inlet` and `outlet` if smaller. The
-        default of `centre` is the point farthest from the front.
+        Blocks end at the distances `near` (in pitches) upstream and downstream of the front, or at the
+        distances `inlet` and `outlet` if these are smaller. By default, `centre` is the point farthest from
+        the front.
         """
         points = front.curve.points
         centre = inner_point(points) if centre is None else centre
@@ -79,7 +80,7 @@ class Passage:
         return np.array([self.period.imag, -self.period.real]) / abs(self.period)
 
     def axial(self, points: Floats) -> Floats:
-        """Return the axial distances (n,) of points (n, 2) from the centre."""
+        """Return the distances (n,) of points (n, 2) from the centre along the axis."""
         return product(points - pairs_of(np.array(self.centre)), self.axis)
 
     def along(self, points: Floats) -> Floats:
@@ -87,16 +88,16 @@ class Passage:
         return np.asarray(((complex_of(points) - self.centre) / self.period).real)
 
     def at(self, axial: Sequence[float], along: Sequence[float]) -> Floats:
-        """Return the points (n, 2) at given distances from the centre: axial (n,), and in pitches (n,)."""
+        """Return points (n, 2) at distances from the centre: `axial` (n,), and `along` (n,) in pitches."""
         centre = pairs_of(np.array(self.centre))
         return centre + np.array(axial)[:, None] * self.axis + np.array(along)[:, None] * self.pitch
 
     def zeta(self, points: Floats) -> Complexes:
-        """Return the complex coordinate ζ (n,) of points (n, 2): the pitch is iπ, the axis real."""
+        """Return the complex coordinates ζ (n,) of points (n, 2); the pitch becomes iπ, the axis real."""
         return np.asarray(times(1j * np.pi, (complex_of(points) - self.centre)) / self.period)
 
     def of_zeta(self, zeta: Complexes) -> Floats:
-        """Return the points (n, 2) at ζ (n,)."""
+        """Return the points (n, 2) with the complex coordinates ζ (n,) of `zeta`."""
         return pairs_of(self.centre + times(zeta, self.period) / (1j * np.pi))
 
     def domain(self, inlet: float, outlet: float) -> Domain:
@@ -149,7 +150,7 @@ def _crossings(polygon: Floats, x: float) -> Floats:
 
 
 def extended(layout: Layout, cut: Indices, passage: Passage, wall: Loop, rows: Sequence[Rows]) -> Layout:
-    """Return the layout of the passage with `rows` attached; its domain has periodic sides and the `wall`.
+    """Return the layout with `rows` attached, in a domain between periodic sides with the blade's `wall`.
 
     `cut` (k,) are the nodes on the lower side of the cut (where the passage repeats), from inlet to outlet.
     """

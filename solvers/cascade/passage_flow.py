@@ -33,14 +33,14 @@ _LEAST = 1e-9  # of the slit: by how much the potential rises from point to poin
 
 @dataclass(frozen=True, eq=False)
 class PassageFlow:
-    """Potential flow past a cascade: a map from blade to slit (potential G), and from slit to strip (σ).
+    """Potential flow past a cascade. It maps the blade to a slit (potential G), and the slit to a strip (σ).
 
     Parameters
     ----------
     half : h, half the length of the slit.
     around : (n,) increasing angles ν of points on the blade; the potential is G = h cos ν.
     strip : (n,) positions σ of these points in the strip, infinite at the ends of the slit.
-    away : (n,) ζ - G at the points.
+    away : (n,) ζ - G at the points, where ζ is the coordinate of `Passage.zeta`.
     """
 
     half: float
@@ -74,7 +74,7 @@ class PassageFlow:
         return cls(half, np.unwrap(angle), along + edge, points - phi)
 
     def to_places(self, places: Complexes) -> Complexes:
-        """Return the positions ζ (n,) of the points whose potentials are G (n,), between the slits."""
+        """Return ζ (n,) at the points between the slits whose potentials are G = `places` (n,)."""
         ratio = sinh(places + self.half) / sinh(places - self.half)
         return places + self.inside(np.asarray(0.5 * log(ratio)))
 
@@ -85,7 +85,7 @@ class PassageFlow:
         return float(before.real), float(behind.real)
 
     def inside(self, places: Complexes) -> Complexes:
-        """Return ζ - G at points σ (m,), by Cauchy's integral of its values on the blade.
+        """Return ζ - G (m,) at points σ = `places` (m,), by Cauchy's integral of its values on the blade.
 
         The integral is a trapezoidal sum in the variable tanh σ/2, divided by the same sum for the constant 1
         (Helsing, Ojala, J. Comput. Phys. 227 (2008) 2899-2921).

@@ -36,7 +36,7 @@ _FEET = 1e3  # positions in the plane G of the nodes on the blade, which have no
 
 
 def template(passage: Passage, *, at_corners: bool) -> Layout:
-    """Return initial blocks of a passage; if `at_corners`, nodes near the blade's corners move there."""
+    """Return initial blocks of a passage; if `at_corners`, the nearest nodes move to corners of the blade."""
     flow = PassageFlow.of(passage.zeta(passage.front.curve.points))
     pieces, angles = _pieces(flow, passage)
     potential, blocks = _joined_pieces(pieces)

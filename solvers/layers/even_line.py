@@ -62,7 +62,7 @@ class Measures:
     slack: Floats | float = 1.0
 
     def at(self, places: Floats, closed: bool) -> Floats:
-        """Return the values (k, n) of the measures at `places` (n,), periodic on closed curves."""
+        """Return the values (k, n) of the measures at positions `places` (n,), periodic on closed curves."""
         turns = np.zeros(len(places))
         if closed:
             turns, places = np.divmod(places, self.arcs[-1])
@@ -72,7 +72,7 @@ class Measures:
 
     @cached_property
     def slopes(self) -> Floats:
-        """(k, m - 1) between the positions."""
+        """(k, m - 1) slopes of the measures between the positions."""
         return np.diff(self.values, axis=1) / np.diff(self.arcs)
 
     @property
@@ -97,7 +97,7 @@ class PlaceLinks:
     rest: Floats
 
     def values(self, places: Floats) -> Floats:
-        """Return the sums (p,)."""
+        """Return the left sides (p,) of the conditions, for positions u = `places`."""
         return np.asarray((self.factors * places[self.pairs]).sum(axis=1) + self.rest)
 
 
@@ -110,9 +110,10 @@ def evened_places(
 ) -> Floats:  # fmt: skip
     """Return ascending positions `places` (n,), moved until ratios of neighbouring steps are limited.
 
-    Positions in the mask `fixed` (n,) do not change. `limit` is the logarithm of the largest ratio; it is
-    relaxed if positions would move by more than `most` steps. On a closed curve, the last step leads to the
-    first position. `change` is the weight μ of `GrowthLimit`.
+    Steps are those of the functions `measures`. Positions in the mask `fixed` (n,) do not change. `limit` is
+    the logarithm of the largest ratio; it is relaxed if positions would move by more than `most` steps. On a
+    closed curve, the last step leads to the first position. `links` are further conditions on positions.
+    `change` is the weight μ of `GrowthLimit`.
     """
     line = _Line.of(places, fixed, measures, closed, links, change)
     new = places
@@ -143,7 +144,7 @@ def evened_loops(
 ) -> Layout:
     """Return the layout with nodes moved along loops; displacements decay across the adjacent blocks.
 
-    `measures` are the functions that are evened on each loop, by index. Corners are fixed; `limit` and `most`
+    `measures` has, by loop index, the functions whose steps are evened. Corners are fixed. `limit` and `most`
     are as in `evened_places`. If cells would fold, the given layout is returned.
     """
     mesh = layout.mesh

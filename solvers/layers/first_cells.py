@@ -15,9 +15,9 @@ from meshonet.kernels._native import layer_steps
 
 @dataclass(frozen=True)
 class Heights:
-    """First-cell heights at the four edges; 0 if none is prescribed.
+    """First-cell heights at the four edges of a block; 0 if none is prescribed.
 
-    Raises InputError: a height, a number of layers or a growth ratio out of range.
+    Raises InputError if a height, the number of constant layers or the growth ratio is out of range.
     """
 
     south: float = 0.0  # in the unit of the boundary
@@ -54,7 +54,7 @@ class Heights:
 
 
 def check_fit(heights: Heights, boundary: Boundary) -> None:
-    """Raise InputError if `boundary` cannot have the heights: wrong sides, too few or too high cells."""
+    """Raise InputError if `heights` do not suit `boundary`: wrong sides, too few cells or too high ones."""
     if boundary.around_body and (heights.north or heights.west or heights.east):
         raise InputError(
             f"a spacing off north, west or east in topology {boundary.topology}",
@@ -79,7 +79,10 @@ def check_fit(heights: Heights, boundary: Boundary) -> None:
 
 
 def cells_needed(length: float, first: float, last: float, heights: Heights) -> int:
-    """Return the smallest number of cells that fill `length` with growth ratios up to `heights.growth`."""
+    """Return how many cells, growing from `first` and `last` by at most `heights.growth`, fill `length`.
+
+    Raises InputError if 100,000 cells are too few.
+    """
     least = heights.constant * ((first > 0) + (last > 0)) + 1
     allowed = heights.growth or LARGEST
     count = least
@@ -94,8 +97,7 @@ def cells_needed(length: float, first: float, last: float, heights: Heights) -> 
 def edge_in_layers(edge: Floats, count: int, first: float, last: float, heights: Heights) -> Floats:
     """Return `count` nodes (count, 2) on the curve through an open edge, with layers at its ends.
 
-    The distance between the first two nodes is `first`, that between the last two is `last`; 0 means that the
-    distance is free.
+    `first` is the distance between the first two nodes, `last` that between the last two; 0 leaves it free.
     """
     curve = Curve(edge)
     nodes = curve.at(arcs_in_layers(curve, count, first, last, heights)[0])

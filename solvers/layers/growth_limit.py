@@ -42,7 +42,7 @@ class GrowthLimit:
 
     @classmethod
     def at(cls, growth: Floats, limit: float | Floats, change: float = CHANGE) -> Self:
-        """Return the penalty term for initial ρ `growth` (..., k); ρ0 is ρ, clipped to the limit."""
+        """Return the penalty term for initial logarithms `growth` (..., k), which, clipped, become ρ0."""
         return cls(limit, np.clip(growth, -limit, limit), change)
 
     def values(self, growth: Floats, weight: float) -> Floats:
@@ -61,10 +61,10 @@ class GrowthLimit:
 
 
 def damped(values: Callable[[Numbers], Floats], at: Numbers, step: Numbers, part: Indices) -> Numbers:
-    """Return `step` (m,), in which each number is halved until the value that depends on it decreases.
+    """Return `step` (m,) with its numbers halved until values decrease.
 
-    `values` returns all values (p,); `part` (m,) is the index of the value that depends on each unknown.
-    Numbers for which no halving helps are 0.
+    `values` returns the values (p,) for given unknowns; `at` (m,) are the present unknowns. `part` (m,) is
+    the index of the value that depends on each unknown. Where no halving helps, numbers become 0.
     """
     start = values(at)
     share = np.ones(len(start))

@@ -16,12 +16,12 @@ def layer_arcs(
     length: Floats, first: float | Floats, last: Floats, cells: int, constant: int = 1, growth: float = 1.0,
     steeper: float = STEEPER,
 ) -> Floats:  # fmt: skip
-    """Return distances (k, cells + 1) from 0 to `length` (k,) of cells that start at the wall.
+    """Return the distances (k, cells + 1) of nodes from the wall, on lines of `length` (k,).
 
-    The first `constant` cells have the height `first`, a number or (k,). The logarithms of the other heights,
-    which never decrease, are a quadratic function of the index; the last height is about `last` (k,). If
-    `last` is infinite, the ratio is constant. The logarithm of a ratio is at most the larger of log(`growth`)
-    and 1 + `steeper` times the logarithm of the constant ratio.
+    The first `constant` cells have the height `first`, a number or (k,). The other heights never decrease.
+    Their logarithms are a quadratic function of the index, and the last height is about `last` (k,); if
+    `last` is infinite, the ratio of heights is constant. The logarithm of a ratio is at most log(`growth`),
+    or (1 + `steeper`) times that of the constant ratio if this is larger.
     """
     rows = cells - constant + 1  # the last constant cell and those that grow
     first = np.broadcast_to(np.asarray(first, dtype=np.float64), length.shape)

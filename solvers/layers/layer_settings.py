@@ -28,11 +28,11 @@ class LayerSettings:
 
     Parameters
     ----------
-    first : first-cell height in the domain's unit, of all walls that are not in `heights`.
+    first : first-cell height, in the domain's unit, of all walls that are not in `heights`.
     growth : largest mean ratio of neighbouring cells along a column.
     constant : number of cells, from the wall, that have the height of the first cell.
     multiple : divisor of the number of layers, so that coarser grids are nested.
-    heights : first-cell heights of walls by name.
+    heights : first-cell heights of walls, by the name of the wall.
     limit : largest ratio of neighbouring cells along lines from walls. If 0, the logarithm of the ratio may
         be a fifth larger than log(`growth`).
     """
@@ -46,13 +46,13 @@ class LayerSettings:
 
     @classmethod
     def limited(cls, first: float, limit: float, **others: Any) -> Self:
-        """Return settings with the growth ratio at most `limit`, inside the layers and beyond them."""
+        """Return settings with ratios of at most `limit` in layers and beyond; `others` are other fields."""
         return cls(first, math.exp(NOMINAL * math.log(limit)), limit=limit, **others)
 
     def at(self, names: Collection[str]) -> Self:
-        """Return the settings for a wall whose parts have the given `names`, some with heights.
+        """Return the settings for one wall with layers, whose parts have the given `names`.
 
-        Raises InputError: parts of the wall have different heights.
+        Raises InputError if parts of the wall have different heights.
         """
         if not self.heights:
             return self
@@ -84,11 +84,11 @@ class LayerSettings:
 
     @property
     def grading(self) -> float:
-        """Growth of cells outside of layers with the distance from walls."""
+        """Growth of cell lengths outside of layers per distance from walls."""
         return min(GRADING, SPREAD * (self.limit - 1.0)) if self.limit else GRADING
 
     def below(self, growth: float) -> float:
-        """Return the growth ratio of cells outside the layers: `growth`, or less to stay below the limit."""
+        """Return the growth ratio for cells outside the layers: `growth`, or less to keep to the limit."""
         return min(growth, 1.0 + NOMINAL * (self.limit - 1.0)) if self.limit else growth
 
     def arcs(self, length: Floats, first: float | Floats, last: Floats, cells: int) -> Floats:
@@ -99,7 +99,7 @@ class LayerSettings:
         return layer_arcs(length, first, last, cells, self.constant, most, steeper)
 
     def rows(self, thickness: float) -> int:
-        """Return the number of layers that fill a thickness."""
+        """Return the number of layers that fill the length `thickness`."""
         rest = max(thickness - (self.constant - 1) * self.first, self.first)
         rows = self.constant - 1 + max(2, cells_for_growth(self.first, rest, self.growth))
         return -(-rows // self.multiple) * self.multiple
@@ -120,12 +120,12 @@ def layer_lines(
 
 
 def exact(lines: Floats, first: float | Floats) -> None:
-    """Move the first node of each line (k, m, 2) exactly to the distance `first` from the wall, in place."""
+    """Move the node next to the wall on each line (k, m, 2) to the exact distance `first`, in place."""
     step = lines[:, 1] - lines[:, 0]
     lines[:, 1] = lines[:, 0] + step * (first / np.hypot(*step.T))[:, None]
 
 
 def spaced(lines: Floats, law: Callable[[Floats], Floats]) -> Floats:
-    """Return new nodes (k, n, 2) on `lines` (k, m, 2), at the arc lengths that `law` returns for lengths."""
+    """Return new nodes (k, n, 2) on `lines` (k, m, 2), at arc lengths that `law` gives for line lengths."""
     arc = arc_lengths(lines)
     return sampled(lines, arc, law(arc[:, -1]))

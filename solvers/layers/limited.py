@@ -23,8 +23,8 @@ _MOST = math.log(100.0)  # of the factor on the last cell of a line
 def limit_growth(nodes: Floats, growth: float, constant: int, last: int = 0) -> bool:
     """Move nodes (ni, nj, 2) along lines of eta, in place; return whether all cells grow by at most `growth`.
 
-    The first `constant` and the last `last` cells of a line do not change. Nodes move along the curve of
-    their line, except where bends of the line are rounded.
+    The first `constant` and the last `last` cells of a line do not change. Nodes stay on the curve of their
+    line, except where bends of the line are rounded.
     """
     allowed = 1.0 + (growth - 1.0) * (1.0 - LEFT)
     limit = 1.0 + (growth - 1.0) * (1.0 - 2.0 * LEFT)

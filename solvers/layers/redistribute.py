@@ -50,7 +50,7 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
     `solution` is a valid quad or O grid for `boundary`, preferably with rows of similar height. The boundary
     nodes of the result differ from those of `boundary`.
 
-    Raises InputError: heights that the boundary cannot have, or that need a larger growth ratio than allowed.
+    Raises InputError if the boundary cannot have the heights, or if growth would exceed the limit.
     """
     check_fit(heights, boundary)
     check_columns(boundary, heights)
@@ -203,5 +203,5 @@ def worst_first_cell(solution: Solution) -> float:
 
 
 def first_cell_error(nodes: Floats, side: str, height: float) -> float:
-    """Return the largest relative error of first-cell heights at a side of nodes (ni, nj, 2)."""
+    """Return the largest relative error of first-cell heights at a side of a block of nodes (ni, nj, 2)."""
     return float(np.abs(first_heights(lines_from_side(nodes, side)) / height - 1.0).max())

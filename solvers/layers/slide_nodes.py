@@ -43,7 +43,7 @@ def slide_walls(boundary: Boundary) -> tuple[Boundary, Controls | None]:
     to oblique west and east sides and at kinks of the walls. The controls are a function φ(ξ) that preserves
     the uneven spacing common to both walls; they are None for even spacing.
 
-    Raises InputError: a topology other than ``quad``.
+    Raises InputError if the topology is not ``quad``.
     """
     if boundary.around_body:
         problem = f"walls of topology {boundary.topology} cannot slide"
