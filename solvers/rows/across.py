@@ -36,10 +36,10 @@ class ChannelLines:
         return cls(upper, upper, squares)
 
     def links(self, u: Floats, start: Floats, pairs: Indices, weight: float) -> PlaceLinks:
-        """Return by how much the lean of lines increases as nodes move from `start` to `u` (k,).
+        """Return conditions on `u` (k,): lines should not lean more than with the places `start` (k,).
 
-        `start` and `u` run from 0 to 1 around a blade. Lean is the tangent of a line's angle to the normal.
-        The increase is linearised at `u` and multiplied by `weight`. Each line joins two nodes, with indices
+        Places run from 0 to 1 around a blade. Lean is the tangent of the angle between a line and the normal.
+        Its increase is linearised at `u` and multiplied by `weight`. Each line joins two nodes, with indices
         `pairs` (p, 2).
         """
         one = u[pairs[:, 0]]
@@ -50,7 +50,7 @@ class ChannelLines:
         return PlaceLinks(pairs, factors, scale * aside - (factors * u[pairs]).sum(axis=1))
 
     def leaning(self, u: Floats, pairs: Indices) -> float:
-        """Return the mean square of the lean of lines between nodes `pairs` (p, 2) at `u` (k,), 0 to 1."""
+        """Return the mean square of the lean of lines between nodes `pairs` (p, 2) at places `u` (k,)."""
         return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
     def weights(self, pairs: Floats) -> Floats:
@@ -58,6 +58,6 @@ class ChannelLines:
         return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
 
     def aside(self, pairs: Floats) -> Floats:
-        """Return by how much (p,), in u, lines between places `pairs` (p, 2) miss the opposite place."""
+        """Return how far (p,), in u, the second place of each pair (p, 2) is from the first's opposite."""
         upper, lower = (wrapped(each, _FROM) for each in (pairs[:, 0], 1.0 - pairs[:, 1]))
         return np.asarray(lower - np.interp(upper, self.upper, self.lower))

@@ -22,7 +22,7 @@ def layer_columns(layout: Layout) -> Indices:
 
 
 def straight_near(lines: Floats, away: Floats) -> Floats:
-    """Return the columns `lines` (k, m, 2), straightened close to a corner, where marched columns are curved.
+    """Return the columns `lines` (k, m, 2), straightened near corners, where marched columns are curved.
 
     `away` (k,) is the distance of each column from the nearest corner.
     """
@@ -34,10 +34,10 @@ def straight_near(lines: Floats, away: Floats) -> Floats:
 
 
 def respaced_columns(values: Floats, space: Floats, first: float) -> Floats:
-    """Return s, theta `values` (k, m, 2), moved along k columns to a first-cell height `first` in space.
+    """Return s, theta (k, m, 2) of columns, with nodes moved along them so that first cells are `first` high.
 
-    `space` (k, m, 3) are x, y, z of the nodes, s is that of `Channel`. The displacements fade to zero at the
-    outer ends.
+    `values` (k, m, 2) are s (see `Channel`) and theta of the given nodes, `space` (k, m, 3) their x, y, z.
+    Outer ends do not move.
     """
     steps = norms(np.diff(space, axis=1))
     return resampled(values, steps, with_first(steps, np.full(len(steps), first)))
@@ -58,7 +58,7 @@ def arcs_of(steps: Floats) -> Floats:
 
 
 def with_first(steps: Floats, first: Floats) -> Floats:
-    """Return `steps` (k, m) scaled gradually, so that the first is `first` (k,) and sums are kept."""
+    """Return `steps` (k, m), changed gradually so that the first is `first` (k,) and sums stay the same."""
     t = np.linspace(0.0, 1.0, steps.shape[1])
     begin = steps * exp(log(first[:, None] / steps[:, :1]) * (1.0 - t) ** 2)
     total = steps.sum(axis=1)

@@ -14,7 +14,7 @@ def exact_in_corners(
     nodes: Floats, begins: tuple[Floats, Floats], sizes: tuple[float, Floats],
     in_space: Callable[[Floats], Floats],
 ) -> Floats:  # fmt: skip
-    """Return nodes (..., 3), moved by Newton's method until both lines to a node have the lengths `sizes`.
+    """Return nodes (..., 3), moved by Newton's method until both lines to each node have given lengths.
 
     Parameters
     ----------

@@ -44,13 +44,13 @@ def gap_ends(
 
     Parameters
     ----------
-    beside : function of the height that returns (k, 2, 3) s, theta, h (`Channel`) of the blade's nodes,
-        clockwise, and of those next to them.
+    beside : function of the height. It returns s, theta, h (k, 2, 3) (see `Channel`) of the blade's nodes,
+        clockwise, and of the nodes next to them.
     lead : index of the node at the leading edge.
     zone : the gap.
     first, growth : height of the cells inside the outline, and largest ratio of neighbouring cells.
 
-    Raises NoValidGridError: cells stay folded.
+    Raises NoValidGridError if cells stay folded.
     """
     tip = zone.high == 1.0  # the blade is below this gap, otherwise above it
     heights = (zone.low, zone.high) if tip else (zone.high, zone.low)
@@ -76,8 +76,8 @@ def gap_blocks(
 ) -> GapBlocks:
     """Return the blocks of a gap, with nodes between its ends.
 
-    `around` (k,) are the indices of the blade's nodes in a section, clockwise; `outline` (levels along the
-    span, k, 3) their s, theta, h (`Channel`).
+    `around` (k,) are the indices of the blade's nodes in a section, clockwise. `outline` (levels, k, 3) are
+    their s, theta, h (see `Channel`) on each level along the span.
     """
     fill = ends.fill
     blade = row.channel.in_space(outline[:, fill.outline])

@@ -40,7 +40,7 @@ UNEVEN = 3.3, 3.9
 
 @dataclass(frozen=True, eq=False)
 class GapFill:
-    """Blocks inside the outline of a blade."""
+    """Five blocks inside the outline of a blade, in a gap."""
 
     outline: Indices  # (k,) indices in the given outline, clockwise from side 0; first nodes of `layout`
     layout: Layout  # the five blocks, the core last
@@ -84,7 +84,7 @@ def filled_outline(outline: Floats, outside: Floats, lead: int, first: float, gr
     lead : index of the node at the leading edge.
     growth : largest ratio of neighbouring cells.
 
-    Raises NoValidGridError: cells are folded.
+    Raises NoValidGridError if cells are folded.
     """
     aside, rows = _counts(outline, lead, first, growth)
     sides = outline_sides(len(outline), lead, aside)

@@ -16,7 +16,7 @@ class HarmonicMoves:
     Parameters
     ----------
     mesh : one of the meshes.
-    prescribed : (n,) nodes with prescribed displacements.
+    prescribed : (n,) mask of the nodes with prescribed displacements.
     """
 
     def __init__(self, mesh: QuadMesh, prescribed: Bools) -> None:

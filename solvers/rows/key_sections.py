@@ -36,7 +36,7 @@ STEEP, MARGIN = 3.0, 0.93
 
 @dataclass(frozen=True, eq=False)
 class SectionPlan:
-    """Data that all sections of a row share."""
+    """Data that all key sections of a row share."""
 
     growth: float  # largest ratio of neighbouring cells
     columns: Indices  # (k, rows + 1) nodes of the layers, clockwise, each column from the blade outwards
@@ -50,7 +50,7 @@ class SectionPlan:
     wake: tuple[float, float]
 
     def bent(self, plane: SectionPlane, nodes: Floats) -> Floats:
-        """Return nodes (n, 2) in m' (`MeridionalMap`) and theta, shifted in theta to follow the wake."""
+        """Return nodes (n, 2), m' (see `MeridionalMap`) and theta, shifted in theta to follow the wake."""
         most = self.wake[0] + self.wake[1] * (plane.height - 0.5)
         start = float(plane.edges[1, 0])
         t = np.maximum(nodes[:, 0] - start, 0.0) / (plane.map.length - start)
@@ -77,7 +77,7 @@ class LayerColumns:
 
 @dataclass(frozen=True, eq=False)
 class KeySection:
-    """The nodes of a section."""
+    """A key section of a row, with its nodes; nodes between key sections are interpolated."""
 
     plane: SectionPlane  # the section as a plane cascade
     layout: Layout  # its blocks in (m', theta), with the domain of the middle section
@@ -103,7 +103,7 @@ def planned(
     Parameters
     ----------
     coarse : `coarse_section` of the middle section, if known.
-    longest : largest lengths of the rows to inlet and outlet, by loop.
+    longest : greatest lengths of the rows to inlet and outlet, by loop index.
     wake : as in `SectionPlan`.
     gaps : whether the blade ends in a gap at the hub, and at the casing.
     """
@@ -141,16 +141,16 @@ def _begun(plan: SectionPlan, planes: Sequence[SectionPlane], section: KeySectio
 
 
 class NextSections:
-    """Makes sections one after another with the same blocks, each from the one before."""
+    """Makes key sections one after another with the same blocks, each from the one before."""
 
     def __init__(self, plan: SectionPlan, section: KeySection) -> None:
         self.plan = plan
         self._problem = _problem(plan, section.plane, section.layout.mesh)
 
     def of(self, before: KeySection, plane: SectionPlane, columns: LayerColumns | None = None) -> KeySection:
-        """Return the section in `plane`, from the section `before`; `columns` are its layers, if known.
+        """Return the section in `plane`, made from the section `before`; `columns` are its layers, if known.
 
-        Raises NoValidGridError: cells stay folded.
+        Raises NoValidGridError if cells stay folded.
         """
         plan = self.plan
         columns = columns or LayerColumns.of(plane, plan.places.at(plane.height))

@@ -43,8 +43,8 @@ class KeyTables:
 def key_tables(row: Row, first: float, growth: float, cells: int) -> KeyTables:
     """Return the key sections of a row, between which nodes are interpolated, with about `cells` cells each.
 
-    `first` and `growth` are first-cell height and growth ratio of the layers. Raises InputError: no room for
-    layers, inlet or outlet. Raises NoValidGridError: cells are folded.
+    `first` is the first-cell height, `growth` the growth ratio of the layers. Raises InputError if there is
+    no room for layers, inlet or outlet. Raises NoValidGridError if cells are folded.
     """
     planes, coarse = _planes(row, first, growth)
     gaps = row.hub_gap > 0.0, row.tip_gap > 0.0

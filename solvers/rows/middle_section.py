@@ -33,7 +33,7 @@ _TRIES, _NEAR = 4, 0.03  # largest number of choices of counts; sufficient relat
 def coarse_section(plane: SectionPlane, *, early: bool = True) -> Layout:
     """Return the coarse blocks of a section; `early` puts nodes at the corners of the blade from the start.
 
-    Raises InputError: no room for inlet or outlet. Raises NoValidGridError: cells are folded.
+    Raises InputError if there is no room for inlet or outlet; NoValidGridError if cells are folded.
     """
     return _sized(template(plane.cascade.passage, at_corners=early), FIRST, None)
 
@@ -41,14 +41,14 @@ def coarse_section(plane: SectionPlane, *, early: bool = True) -> Layout:
 def middle_section(
     planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], coarse: Layout | None = None
 ) -> Layout:
-    """Return the middle section of `planes`, with layers and about `cells` cells.
+    """Return the middle one of the sections `planes`, with layers and about `cells` cells.
 
     Parameters
     ----------
-    longest : largest lengths in any section of the rows to inlet and outlet, by loop.
+    longest : greatest lengths, in any section, of the rows to inlet and outlet, by loop index.
     coarse : `coarse_section`, if known.
 
-    Raises NoValidGridError: cells are folded.
+    Raises NoValidGridError if cells are folded.
     """
     plane = planes[len(planes) // 2]
     try:

@@ -21,7 +21,7 @@ _IN_GAP = 5  # number of heights in a gap at which lines are measured
 
 @dataclass(frozen=True, eq=False)
 class NodeGroup:
-    """Some nodes of a row."""
+    """Some nodes of a row that are computed together."""
 
     row: Row  # the row
     zones: Sequence[Zone]  # zones of the span, from hub to casing
@@ -46,7 +46,7 @@ class NodeGroup:
         return out
 
     def values(self, arcs: Sequence[LineArcs], spacings: Sequence[Spacing]) -> Floats:
-        """Return s, theta, h of `Channel` (levels, m, 3), from the arc lengths and spacing of each zone."""
+        """Return s, theta, h (levels, m, 3) (see `Channel`) for the arc lengths and spacing of each zone."""
         values = self.at(self._heights(arcs, spacings))
         self._exact_along_span(values)
         if self.around:
@@ -54,7 +54,7 @@ class NodeGroup:
         return values
 
     def at(self, heights: Floats) -> Floats:
-        """Return s, theta, h of `Channel` (levels, m, 3) at `heights` (levels, m); first cells are exact."""
+        """Return s, theta, h (levels, m, 3) (`Channel`) at `heights` (levels, m); first cells are exact."""
         values = np.empty((*heights.shape, 3))
         values[..., :2], values[..., 2] = self.lines.at(heights), heights
         np.clip(values[..., 0], 0.0, 1.0, out=values[..., 0])
@@ -103,10 +103,10 @@ class NodeGroup:
         own[beside, :, 1] = exact_in_corners(own[beside][:, :, 1], begins, lengths, self.row.channel.in_space)
 
     def store(self, values: Floats, rises: Sequence[Rise], space: Floats) -> None:
-        """Store x, y, z of the group's nodes in `space` (levels, n, 3) of all nodes.
+        """Store x, y, z of the group's nodes in `space` (levels, n, 3), which is for all nodes of the row.
 
-        `values` (levels, m, 3) are s, theta, h (`Channel`) of the group's nodes; `rises` displace nodes of
-        layers.
+        `values` (levels, m, 3) are s, theta, h (see `Channel`) of the group's nodes. `rises` displace the
+        nodes of layers.
         """
         self.row.channel.store(values, self.ids, space)
         if rises:

@@ -36,13 +36,13 @@ class Rise:
 
     @classmethod
     def of(cls, row: Row, zone: Zone, blade: Zone, around: SpanLines, lines: SpanLines) -> Self:
-        """Return the displacements of layers next to a gap, `zone`.
+        """Return the displacements of the layers next to the gap `zone`.
 
         Parameters
         ----------
         row, blade : the row, and the zone of the blade.
         around : coordinate u around the blade of the k columns, as functions of the height.
-        lines : s and theta of all k * (rows + 1) nodes of the columns as functions of the height.
+        lines : s and theta of all k * (rows + 1) nodes of the columns, as functions of the height.
         """
         end, up, width = (blade.high, 1.0, row.tip_gap)
         if zone.low == 0.0:
@@ -55,11 +55,11 @@ class Rise:
         return cls(end, up, zone.high - zone.low, deep, moves)
 
     def of_columns(self, part: slice) -> Self:
-        """Return the moves of some columns."""
+        """Return the displacements of the columns in the slice `part`."""
         return replace(self, deep=self.deep[part], moves=self.moves[part])
 
     def shares(self, heights: Floats) -> Floats:
-        """Return the fractions (levels, k) of displacements, by height and column."""
+        """Return the fraction (levels, k) of its displacement by which each column moves at given heights."""
         off = self.up * (heights - self.end)
         away = np.where(off > 0.0, off / self.gap, -off / self.deep)
         return np.asarray(smooth_step(np.clip(1.0 - away, 0.0, 1.0)))
@@ -68,7 +68,7 @@ class Rise:
 def rises_of(
     row: Row, zones: Sequence[Zone], around: SpanLines, lines: SpanLines, first: float
 ) -> list[Rise]:
-    """Return the displacements of columns next to each narrow gap (`Rise.of`)."""
+    """Return the displacements (`Rise.of`) of the columns next to each narrow gap."""
     blade = next(zone for zone in zones if not zone.gap)
     narrow = [zone for zone in zones if zone.gap and zone.ends[0] < NARROW * first]
     rises = [Rise.of(row, zone, blade, around, lines) for zone in narrow]

@@ -39,7 +39,7 @@ _OTHER = 0.15  # relative difference from the requested number of cells above wh
 def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
     """Return the grid of one passage of a row, and notes.
 
-    Raises InputError: no room for layers, inlet or outlet. Raises NoValidGridError: cells are folded.
+    Raises InputError if there is no room for layers, inlet or outlet; NoValidGridError if cells are folded.
     """
     first, growth = request.height() * row.chord, request.ratio
     zones = zones_of(row, first, growth, request.cells)
@@ -82,7 +82,7 @@ def turned_by(angle: float) -> Motion:
 
 @dataclass(frozen=True, eq=False)
 class ZoneSection:
-    """The blocks on one level of a zone."""
+    """The blocks on one level of a zone of the span."""
 
     # plane, layout: those around the blade, as a planar grid and as a layout
     plane: Grid

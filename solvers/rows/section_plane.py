@@ -36,8 +36,8 @@ _NEAR_EDGE = 0.06  # places before and behind the trailing edge by which the mea
 class SectionPlane:
     """A section of a blade row, mapped to a plane cascade.
 
-    Places around the blade are values of a coordinate u: 0 at the leading edge, up to 0.5 at the trailing
-    edge along the upper side, then up to 1 along the lower side.
+    A place on the blade is given by the coordinate u. It is 0 at the leading edge, increases to 0.5 at the
+    trailing edge along the upper side, then to 1 along the lower side.
     """
 
     height: float  # height h in the channel, 0 at the hub to 1 at the casing
@@ -47,7 +47,7 @@ class SectionPlane:
 
     @classmethod
     def of(cls, row: Row, height: float, first: float, growth: float, share: float = 1.0) -> Self:
-        """Return the section of a row at a height, with first cells `first` high; `share`: see `Cascade`."""
+        """Return the section at a `height`; first cells are `first` high, `share` is a field of `Cascade`."""
         u, lines = _lines(row.surface)
         s, theta = row.surface.crossings(lines, np.full(len(u), height)).T
         to = row.channel.meridional(height)
@@ -79,7 +79,7 @@ class SectionPlane:
 
     @property
     def thickest(self) -> float:
-        """Place u, 0 to 0.5, at which the blade is thickest, measured from u to 1 - u."""
+        """Place u, 0 to 0.5, at which the distance from u to 1 - u across the blade is greatest."""
         u = np.linspace(0.1, 0.4, 61)
         return float(u[int(modulus(self._opposite(u) - self._opposite(1.0 - u)).argmax())])
 
@@ -88,14 +88,14 @@ class SectionPlane:
 
     @cached_property
     def edges(self) -> Floats:
-        """(m', theta) (2, 2) of the leading and the trailing edge."""
+        """(2, 2) m' and theta of the leading edge and of the trailing edge."""
         return self.cascade.blade.at(self.wall_arcs(np.array([0.0, 0.5])))
 
     @property
     def wake(self) -> float:
         """Theta at the outlet minus theta at the trailing edge, on a straight line.
 
-        The line continues the mean line of the blade, with an angle of at most `STEEPEST` degrees.
+        The line continues the mean line of the blade, at an angle of at most `STEEPEST` degrees to the axis.
         """
         one, other = self._opposite(np.array([0.5 - _NEAR_EDGE, 0.5 + _NEAR_EDGE]))
         way = complex(*self.edges[1]) - complex(0.5 * (one + other))
@@ -104,7 +104,7 @@ class SectionPlane:
         return slope * (self.map.length - float(self.edges[1, 0]))
 
     def ending(self, near: tuple[float, float], thickest: float) -> Self:
-        """Return the section with straight rows of cells from `near` pitches before and behind the blade.
+        """Return the section with straight rows of cells from `near` pitches before and behind the blade on.
 
         The conformal map has its centre midway between the places u = `thickest` and u = 1 - `thickest`.
         """
@@ -118,7 +118,7 @@ class SectionPlane:
         return self.places[list(self.cascade.blade.corners)]
 
     def from_corners(self, arcs: Floats) -> Floats:
-        """Return distances (n,) along the blade from `arcs` (n,) to the nearest corner, or infinity."""
+        """Return distances (n,) on the blade from arc lengths (n,) to the nearest corner, or infinity."""
         off = wrapped((arcs - self.wall_arcs(self.corners)[:, None]) / self._walls[-1])
         return np.asarray(self._walls[-1] * np.abs(off).min(axis=0, initial=np.inf))
 
@@ -135,7 +135,7 @@ class SectionPlane:
         return np.interp(np.mod(arcs, self._walls[-1]), self._walls, np.append(self.places, 1.0))
 
     def front_arcs(self, u: Floats) -> Floats:
-        """Return arc lengths (n,), on the outer edge of the layers, of columns from `u` (n,) on the blade."""
+        """Return arc lengths (n,), on the outer edge of the layers, of columns from places `u` (n,)."""
         ring = self.cascade.ring
         length, start = self._walls[-1], ring.arcs[0]
         walls = np.append(ring.arcs, start + length)
@@ -159,7 +159,7 @@ class SectionPlane:
         return lower, np.where(inside, self.cascade.blade.length / np.sqrt(here), 0.0)
 
     def place(self, point: Floats) -> str:
-        """Return, as text for users, where a point (2,) is along the span and along the blade."""
+        """Return, as text for users, the position of a point (2,) along the span and along the blade."""
         share = float(self.shares(point[None])[0])
         along = f"between the blades, {100.0 * share:.0f} % of the way along them"
         if share < _AT_EDGE:
@@ -169,7 +169,7 @@ class SectionPlane:
         return f"section at {100.0 * self.height:.3g} % of the span, {along}"
 
     def shares(self, points: Floats) -> Floats:
-        """Return shares (n,) of points (n, 2): how far along the passage they are.
+        """Return how far along the passage points (n, 2) are, as shares (n,).
 
         A share is -1 at the inlet, 0 at the leading edge, 1 at the trailing edge, 2 at the outlet.
         """

@@ -21,7 +21,7 @@ def key_heights(count: int) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class SpanLines:
-    """Chebyshev coefficients (k, n, ...) of n functions of the height, 0 to 1."""
+    """Polynomials: n functions of the height, 0 to 1, with Chebyshev coefficients (k, n, ...)."""
 
     coefficients: Floats
 
@@ -29,7 +29,7 @@ class SpanLines:
     def through(cls, values: Floats, degree: int | None = None) -> "SpanLines":
         """Return the polynomials through values (k, n, ...) at ``key_heights(k)``.
 
-        With a `degree` below k - 1 they are least-squares fits with half weight at both ends.
+        If `degree` is below k - 1, they are least-squares fits with half weight at both ends.
         """
         kept = _fit(len(values))[: len(values) if degree is None else degree + 1]
         return cls(_times(kept, values))

@@ -45,7 +45,7 @@ class SpanPlaces:
         Parameters
         ----------
         planes : all sections.
-        pairs : (p, 2) nodes on the upper and the lower side that lines across the channel join.
+        pairs : (p, 2) nodes on the upper and on the lower side that are joined by lines across the channel.
         gaps : whether there is a gap at the hub, and at the casing.
         """
         corners, half = planes[0].corners, len(planes) // 2

@@ -24,9 +24,9 @@ Ends: TypeAlias = tuple[Floats | float, Floats | float]
 
 
 def spaced_cells(length: float, ends: Ends, growth: float, largest: float, least: int) -> int:
-    """Return the number of cells, at least `least`, that fill a length.
+    """Return the number of cells that fill a `length`; it is at least `least`.
 
-    Cells grow by `growth` from both `ends` up to the length `largest`.
+    From the sizes `ends` at both ends, cells grow by the ratio `growth`, up to the size `largest`.
     """
 
     def reach(cells: int) -> float:
@@ -36,7 +36,7 @@ def spaced_cells(length: float, ends: Ends, growth: float, largest: float, least
 
 
 def two_sided(lengths: Floats, ends: Ends, growth: float, cells: int) -> Floats:
-    """Return arc lengths (n, cells + 1) on lines of `lengths` (n,); cells grow from both ends."""
+    """Return arc lengths (n, cells + 1) on lines of `lengths` (n,), for cells that grow from both `ends`."""
     from_ends = _from_ends(ends, growth, cells)
     least, most = lengths / cells, lengths
     largest = least
@@ -53,10 +53,10 @@ def two_sided(lengths: Floats, ends: Ends, growth: float, cells: int) -> Floats:
 
 
 def smooth_arcs(lengths: Floats, ends: tuple[Floats | float, Floats | float | None], cells: int) -> Floats:
-    """Return arc lengths (n, cells + 1) on lines of `lengths` (n,), with evenly changing cells.
+    """Return arc lengths (n, cells + 1) of nodes on lines of `lengths` (n,), with evenly changing cells.
 
-    The logarithm of a cell's length is quadratic in its index, linear if the last of `ends` is None. `ends`
-    are the first and the last cell length.
+    `ends` are the first and the last cell length. The logarithm of the cell length is a quadratic function of
+    the index of the cell, or linear if the last of `ends` is None.
     """
     t = np.linspace(0.0, 1.0, cells)
     first, last = (None if end is None else np.broadcast_to(end, lengths.shape)[:, None] for end in ends)
@@ -81,7 +81,7 @@ def smooth_arcs(lengths: Floats, ends: tuple[Floats | float, Floats | float | No
 def smooth_cells(
     length: Floats | float, ends: tuple[Floats | float, Floats | float | None], growth: float, least: int
 ) -> int:
-    """Return the least number of cells, from `least` on, for which `smooth_arcs` grows by at most `growth`.
+    """Return the least number of cells, not below `least`, with which `smooth_arcs` grows by up to `growth`.
 
     `length` and `ends` are numbers, or (n,) for n lines.
     """
@@ -115,7 +115,7 @@ def _fourth(values: Floats) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Spacing:
-    """Relative arc lengths on lines, as `two_sided`, tabulated for a range of line lengths."""
+    """Relative arc lengths of the nodes of `two_sided`, tabulated for a range of line lengths."""
 
     lengths: tuple[float, float]  # shortest and longest line
     table: Floats  # (cells + 1, m) relative arc lengths at m equally spaced lengths

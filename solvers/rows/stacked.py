@@ -91,7 +91,7 @@ class StackedRow:
         return second, partner[second]
 
     def beside(self, height: float) -> Floats:
-        """Return s, theta, h of `Channel` (k, 2, 3), on and next to the blade, at the end of blade or gap."""
+        """Return s, theta, h (k, 2, 3) (see `Channel`) of nodes on and next to the blade, at a `height`."""
         group = self._group(self.columns.ravel(), self.around)
         values = group.at(np.full((1, self.columns.size), height))
         return values.reshape(*self.columns.shape, 3)[:, :2]

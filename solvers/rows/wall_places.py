@@ -25,8 +25,8 @@ def even_wall_places(
     Parameters
     ----------
     corners : (c,) places of nodes that stay.
-    pairs : (p, 2) nodes on both sides that lines across the channel join.
-    lines : mean lines, from which the lines should not lean more than before.
+    pairs : (p, 2) nodes on both sides that are joined by lines across the channel.
+    lines : mean lines of `ChannelLines`, from which lines should not lean more than before.
     opposite : whether each node at u keeps a node at 1 - u opposite; `lines` then have no effect.
     """
     limit = MARGIN * math.log(growth)

@@ -27,10 +27,10 @@ def whole_section(
     Parameters
     ----------
     beyond : layout of the blocks beyond the layers, in m' (`MeridionalMap`) and theta.
-    layers : number of rows of the layers.
-    largest : size of the largest cells.
-    longest : largest lengths in any section of the rows to inlet and outlet, by loop; they determine numbers
-        of cells.
+    layers : number of layers.
+    largest : length of the longest cells.
+    longest : greatest lengths, in any section, of the rows to inlet and outlet, by loop index; they determine
+        numbers of cells.
     """
     cascade = plane.cascade
     mesh = beyond.mesh

@@ -29,12 +29,12 @@ class Zone:
 
 
 def section_cells(zones: Sequence[Zone], cells: int, growth: float) -> int:
-    """Return how many cells a section has for about `cells` in the row; more if `growth` requires that."""
+    """Return how many cells a section needs for about `cells` in the row; more if `growth` requires it."""
     return max(_needed(growth), int(cells / _sections(zones)))
 
 
 def fewest_cells(zones: Sequence[Zone], growth: float) -> int:
-    """Return about the fewest cells of a row whose cells grow by at most `growth`."""
+    """Return about the smallest number of cells of a row whose cells grow by at most `growth`."""
     return round(_needed(growth) * _sections(zones))
 
 
