@@ -36,9 +36,9 @@ HEAD = """# Bodies with a wing
 
 <!-- made by python benchmarks/bench_aircraft.py --airfoils FOLDER --page docs/benchmarks/aircraft.md -->
 
-Use this page to find the quality and the CPU time of the grids that `stack` makes for [bodies with
-wings](../guide/aircraft.md). The {count} bodies and wings are random. The processor is {machine}; one thread
-is used, while other programs run.
+Use this page to find the quality and the CPU time of volume grids around [a body with a
+wing](../guide/aircraft.md), made by the command `meshonet stack`. The {count} bodies and wings are random.
+Times are for one thread of {machine}.
 
 Each body has a round nose and a slender tail. These properties are random:
 
@@ -46,28 +46,29 @@ Each body has a round nose and a slender tail. These properties are random:
 | --- | --- |
 | section of the wing | one of {files} real airfoils, 10 to 20 % thick |
 | height of the wing | from half a body radius below the axis to half a body radius above it |
-| taper, the chord of the tip over the chord of the root | 0.3 to 0.7 |
-| sweep, dihedral | 0 to 30 degrees, 0 to 5 degrees |
-| first-cell height | 1e-5 to 1e-3 chords of the root |
+| taper (chord at the tip / chord at the root) | 0.3 to 0.7 |
+| sweep | 0 to 30 degrees |
+| dihedral | 0 to 5 degrees |
+| first-cell height | 1e-5 to 1e-3 root chords |
 
-Grids have {around} nodes around the wing and {span} along the span, and a far field at {far:g} chords.
+Each grid has {around} nodes around the wing, {span} nodes along the span, and its far field at {far:g} root
+chords.
 
-- *scaled Jacobian*: smallest [scaled Jacobian](../reference/metrics.md#cells-of-volumes) of the cells of a
-  grid.
-- *first-cell error*: largest relative error of a first-cell height.
-- *even growth*: of all pairs of consecutive edges of a grid line, the share whose lengths differ by a factor
-  of at most 1.3. Grid lines continue across block interfaces.
-- *angle to the wall normal*: 95th percentile of the angle between the normal of a wall and the grid line
-  that leaves it.
+- *scaled Jacobian*: smallest [scaled Jacobian](../reference/metrics.md#cells-of-volumes) of a grid.
+- *first-cell error*: largest relative error of the first-cell heights of a grid.
+- *even growth*: share of the pairs of adjacent edges along a grid line whose lengths differ by at most a
+  factor of 1.3. Grid lines continue from block to block.
+- *angle to the wall normal*: angle between a grid line that leaves a wall and the wall normal; 95th
+  percentile of a grid.
 
 | quantity | best | median | worst |
 | --- | --- | --- | --- |
 """
 TAIL = """
-- {made} of the {count} aircraft have a grid, with {fewest:,} to {most:,} nodes.
-- {valid} of the {made} grids have no folded cells: the Jacobian is positive everywhere, because all its
-  Bezier coefficients are positive.
-- Nodes that two blocks share are equal: their largest distance is {seams:g}.
+- {made} of the {count} bodies with a wing have a grid, with {fewest:,} to {most:,} nodes.
+- {valid} of these {made} grids have no folded cells: all Bezier coefficients of the Jacobian are positive, so
+  the Jacobian is positive everywhere.
+- Nodes of adjacent blocks match: their largest distance is {seams:g}.
 """
 
 

@@ -214,21 +214,21 @@ HEAD = """# Multi-block grids of plane domains, compared with Gmsh
 
 <!-- made by python benchmarks/bench_blocks.py --page docs/benchmarks/blocks.md -->
 
-Use this page to see how often `solve-pde` generates a valid multi-block grid, how good the grid is, and how
-long it takes. The second table compares meshonet with Gmsh. Both use one thread, while other programs run.
+Use this page to see how often `meshonet solve-pde` generates a valid multi-block grid, how good the grid is,
+and how long it takes. CPU times are for one thread.
 
 Each domain is a GeoJSON file for the command `meshonet solve-pde FILE --cells 2500 -o F.vtm`.
 
 - *files*: domain files from other sources than meshonet. *gallery*: the domains of the
   [gallery](../gallery/domains.md). *random*: random domains.
-- *valid grids*: all corner Jacobians are positive, nodes of adjacent blocks match, wall nodes lie on the
-  outline within 1e-8 of the domain size, and the relative error of the area is at most 1e-3.
+- *valid grids*: all corner Jacobians are positive, and nodes of adjacent blocks match. Boundary nodes lie on
+  the outline within 1e-8 of the domain size. The relative error of the area is at most 1e-3.
 - *irregular vertices*: interior nodes at which more or fewer than four cells meet.
-- *mean deviation*: mean deviation of cell corner angles from 90 degrees.
+- *mean deviation*: deviation of a cell corner angle from 90 degrees, averaged over all corners of a grid.
 - *99th percentile*: 99 % of the cells of a grid have no corner angle with a larger deviation.
 - *CPU time*: time of the whole command.
 
-Blocks, irregular vertices and deviations are medians over the domains.
+The columns *blocks* to *99th percentile* are medians over the domains.
 """
 VALID = """\
 | domains | valid grids | blocks | irregular vertices | mean deviation, degrees | 99th percentile, degrees \
@@ -237,10 +237,9 @@ VALID = """\
 BESIDE = """
 ## Comparison with Gmsh
 
-Gmsh meshes a sample of the domains, with quadrilaterals only and with about as many cells as meshonet. Its
-algorithm 11 is made for quadrilaterals. All columns but the first three are medians over the domains. The
-CPU time of Gmsh is the time to mesh, without reading and writing; the CPU time of meshonet is the time of
-the whole command.
+Gmsh meshed a sample of the domains with its algorithm for quadrilaterals, 11, and with about as many cells as
+meshonet. The CPU time of Gmsh is the time to mesh; that of meshonet is the time of the whole command, with
+reading and writing. The last five columns are medians over the domains.
 
 | program | domains meshed | meshes with triangles | irregular vertices | mean deviation, degrees \
 | 99th percentile, degrees | CPU time, s | cells |

@@ -158,26 +158,28 @@ def wakes() -> str:
 WAKES = """
 ## C grids: no model
 
-A C grid is a four-sided domain whose south side consists of wake, airfoil and wake. The table gives averages
-over six grids of 201 x 65 nodes: around three airfoils, each with a far field at 5 and at 15 chords. The
-network `quad-general` for four-sided domains was not trained on C grids, and predicts 33 x 33 nodes only.
-Use `infer`, which marches C grids from the wall.
+No network was trained on C grids. Use `infer --topology c` without `--model`, which marches C grids from the
+wall.
+
+The table gives averages over six C grids of 201 x 65 nodes: around three airfoils, each with a far field at 5
+and at 15 chords. `quad-general` is the network for four-sided domains.
 
 | method | valid, % | largest angle, degrees | mean angle, degrees | CPU time per grid, ms |
 | --- | --- | --- | --- | --- |"""
 HOLES = """
 ## Plates with a hole, from the MeshONet paper, 101 x 101
 
-The shapes are square plates of side 2 with a round hole of radius 0.35. Each row names the heights of the
-hole above the middle of the plate. The first table gives the median distance to Winslow's solution and, in
-brackets, the number of grids with folded cells. *MeshONet* is the paper's network and *MeshONet-hard* a
-variant. Both were trained on 30 plates with a hole ([the reproduction](paper/index.md)), `hole-winslow` on
-none.
+The shapes are square plates of side 2 with a round hole of radius 0.35. The height of the hole is measured
+from the middle of the plate. *MeshONet* is the network of the paper, *MeshONet-hard* a variant of it. Both
+were [trained](paper/index.md) on 30 plates with a hole; `hole-winslow` was not trained on such plates.
+
+The first table gives the median distance to Winslow's solution and, in brackets, the number of grids with
+folded cells.
 
 | height of the hole | hole-winslow --polish off | hole-winslow --polish 2 | MeshONet | MeshONet-hard |
 | --- | --- | --- | --- | --- |"""
 HOLE_ANGLES = """
-The second table gives the largest / mean angle in degrees.
+The second table gives the largest angle / the mean angle in degrees.
 
 | height of the hole | hole-o --polish off | hole-o --polish 5 | Winslow |
 | --- | --- | --- | --- |"""
@@ -185,41 +187,39 @@ HEAD = """# The neural operator for bodies: accuracy and time
 
 <!-- made by python benchmarks/bench_bodies.py --page docs/benchmarks/body-operator.md -->
 
-Read this page to decide whether the neural operator `hole-o` is accurate enough for your O grids around
-bodies. The page compares `hole-o` and `hole-winslow` with the solvers whose grids they predict, on random
-bodies and on plates with a hole. CPU times are medians, for one thread on a machine that other programs also
-used.
+Read this page to decide whether the neural network `hole-o` is accurate enough for your O grids around
+bodies. `hole-o` predicts the grid of the variational solver. A second output of the same
+[network](../theory/operators.md), `hole-winslow`, predicts the grid of Winslow's solver. The page compares
+both with the solvers, on random bodies and on plates with a hole. CPU times are medians, for one thread.
 
 - *TFI*: transfinite interpolation.
-- *Winslow* and *variational*: solvers, `solve-pde --method winslow` and `--method variational`.
-- *--coarse 65*: the solver runs on 65 x 65 nodes, and its grid is interpolated.
-- *hole-o* and *hole-winslow*: predictions of the variational grid and of Winslow's grid, by one
-  [network](../theory/operators.md) with two outputs.
-- *--polish n*: solver iterations after the network: n iterations of the variational method for `hole-o`, n
-  multigrid cycles for `hole-winslow`. *off*: none.
-- *valid*: share of grids without folded cells, before the repair that `infer` and `solve-pde` make.
-- *largest angle* and *mean angle*: maximum and mean, over all cells of a grid, of the largest angle in each
-  cell. The tables give averages over the bodies.
+- *Winslow*, *variational*: the solvers `solve-pde --method winslow` and `solve-pde --method variational`.
+- *--coarse 65*: the solver runs on 65 x 65 nodes, and its grid is interpolated to all nodes.
+- *--polish n*: n solver iterations after the network. They are iterations of the variational solver for
+  `hole-o`, multigrid cycles of Winslow's solver for `hole-winslow`. *off*: none.
+- *valid*: share of grids without folded cells, before `infer` or `solve-pde` repairs them.
+- *largest angle*, *mean angle*: each cell has a largest angle. The columns give the maximum and the mean of
+  these angles over the cells of a grid, averaged over the bodies.
 - *gain in mean angle*: 0 % is the mean angle of Winslow's grids, 100 % that of variational grids. Bodies
   whose Winslow grid has folded cells do not count.
 - *distance*: relative L2 distance to the converged solution of Winslow's equations.
 
-Bodies for which Winslow's solver or the variational solver fails are left out: 2 of the first 40.
+Bodies for which one of the two solvers fails are left out: 2 of the first 40.
 """
 TAIL = """
 ## Conclusions
 
-- **Default**: `infer` without `--model` uses `hole-o` only for compact bodies for which the conformal map
-  fails. The network predicts 65 x 33 nodes; if these cells are folded, the elliptic solver makes the grid.
+- **Default**: `infer` without `--model` uses `hole-o` only for [compact
+  bodies](../theory/operators.md) for which the conformal map fails.
 - **Quality**: all 44 grids of `hole-o --polish 5` are valid, with a gain of 93 to 96 %. Of Winslow's grids on
   129 x 65 nodes, 24 % have folded cells.
 - **Time**: `hole-o --polish 5` takes about three times as long as Winslow's solver, and a third of the time
-  of the variational solver, which gives the smallest mean angles.
+  of the variational solver.
 - **Spacing**: in the grids of `hole-o` and of the variational solver, grid lines cluster where the body is
   close to the far field.
-- **Limits**: `hole-o` was not trained on bodies whose centroid lies outside them, such as clips, crescents
-  and angle sections. Around such bodies its grids often have folded cells without polish. For 25 such bodies
-  and thin plates, all grids of `--polish 5` were valid.
+- **Limits**: around bodies that are not compact, such as clips, crescents and angle sections, the grids of
+  `hole-o` often have folded cells without polish. With `--polish 5` the grids around 25 such bodies and thin
+  plates were all valid.
 """
 
 if __name__ == "__main__":

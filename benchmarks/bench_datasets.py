@@ -43,13 +43,13 @@ HEAD = """# Datasets of a million grids
 
 <!-- made by python benchmarks/bench_datasets.py --page docs/benchmarks/datasets.md -->
 
-Read this page before you generate a dataset of very many grids: it gives the memory and time of such a batch,
-and the time to read a sample. The grids are tiny, 5 x 4 nodes, so that the times do not contain the time of a
-solver. Times are wall-clock times of one process. Other programs used the machine while the time in total and
-the comparison with Zarr were measured.
+Read this page before you generate a dataset of very many grids. It gives the memory and the time of such a
+batch, and the time to read a sample. Times are wall-clock times of one process. Other programs used the
+machine during some of the measurements.
 
-A large dataset consists of files called *parts* and an *index file* `out.h5`, which presents all parts as one
-HDF5 file ([large datasets](../guide/datasets.md)).
+A large dataset consists of files called *parts* and of an *index file*, which presents all parts as one HDF5
+file ([large datasets](../guide/datasets.md)). Each grid here has only 5 x 4 nodes, so that the
+solver takes hardly any time.
 """
 READING = """
 ## Reading
@@ -60,24 +60,23 @@ of {repeats} processes, with the maximum in brackets.
 PARTS = """
 ## Number of parts
 
-Each part has ten grids. *Open* and *read* are medians of five new processes, which read the nodes of the last
-sample.
+Each part has ten grids. *open* and *read* are times of a new process that reads the nodes of the last sample;
+medians of five processes.
 """
 ZARR = """
 ## Comparison with Zarr
 
-The nodes of 200,000 grids are stored in 200 files: as HDF5 parts with an index file, and as shards of Zarr.
-*Import*, *open* and *read* are medians of five new processes, which read the last grid.
+The nodes of 200,000 grids are stored in 200 files, by HDF5 as parts with an index file, by Zarr as shards.
+*import*, *open* and *read* are times of a new process that reads the last grid; medians of five processes.
 """
 TAIL = """
 ## Conclusions
 
-- Memory does not grow with the number of grids: 63 MB after 100,000 grids, 64 MB after a million.
-- A batch spends 0.3 ms per grid besides the solver. The index file of 1,000 parts takes 4 s.
-- Reading the nodes of a sample takes 5 ms with 1,000 parts and 46 ms with 10,000 parts. A part
-  therefore has up to 1,000 grids, or fewer if it would exceed 256 MiB: 500 grids of 200 x 100 nodes.
-- From 200 files, HDF5 reads a sample in 0.6 ms, Zarr in 1.6 ms. meshonet uses HDF5, which needs no further
-  package, and which h5py, MATLAB and Julia can read.
+- **Memory** does not grow with the number of grids: 63 MB after 100,000 grids, 64 MB after a million.
+- **Writing** takes 0.3 ms per grid, besides the solver. The index file of 1,000 parts takes 4 s.
+- **Reading** the nodes of a sample takes 5 ms with 1,000 parts and 46 ms with 10,000 parts. By default a part
+  therefore has 1,000 grids, or fewer if it would exceed 256 MiB.
+- **Zarr** takes 1.6 ms to read a sample from 200 files, HDF5 0.6 ms.
 """
 READER = """
 import json, sys, time, h5py

@@ -35,38 +35,34 @@ HEAD = """# Deformed grids, compared with inverse-distance weighting
 <!-- made by python benchmarks/bench_deform.py --airfoils FOLDER --bodies FOLDER -->
 
 Use this page to compare [`meshonet deform`](../guide/deform.md) with two published methods on random
-deformations of plane grids (seed {seed}). The processor is {machine}; one thread is used, while other
-programs run.
+deformations of plane grids (seed {seed}). CPU times are for one thread of {machine}.
 
 Deformations:
 
-- *sharp airfoils*, *blunt airfoils* (by the trailing edge): the thickness is multiplied by 0.9 to 1.1, and
-  the camber is changed by -2 to 2 % of the chord. The C grids have 250 x 100 nodes, a second block behind a
-  blunt trailing edge, and first cells of y+ = 1 at Reynolds number 6e6.
-- *flap*: the flap of an airfoil with a slat, a main element and a flap is rotated by up to 10 degrees about
-  a point near its leading edge. The multi-block grid has about 20,000 cells.
+- *sharp airfoils*, *blunt airfoils*: airfoils with a sharp and with a blunt trailing edge. The thickness is
+  multiplied by 0.9 to 1.1, and the camber is changed by -2 to 2 % of the chord. The C grids have 250 x 100
+  nodes, a second block behind a blunt trailing edge, and first cells of y+ = 1 at Reynolds number 6e6.
+- *flap*: in a multi-block grid around slat, main element and flap, with about 20,000 cells, the flap is
+  rotated by up to 10 degrees about a point near its leading edge.
 
 Methods:
 
-- *IDW*: inverse-distance weighting of displacements, with weights 1/r^3 (Witteveen, Bijl, AIAA 2009-3996).
-- *IDW, rotations*: inverse-distance weighting of displacements and rotations, with the exponents -3 and -5
-  (Luke, Collins, Blades, J. Comput. Phys. 231 (2012) 586-601).
-- *deform*: as *IDW, rotations*, but with the exponents -2 and -4; each group of distant boundary nodes counts
-  as one node.
-  If cells are folded, `deform` repeats the deformation in several steps; here this happens for {steps}
-  deformations.
+- *IDW*: inverse-distance weighting of the displacements of the boundary nodes, with weights r^-3 (Witteveen,
+  Bijl, AIAA 2009-3996).
+- *IDW, rotations*: weighting of displacements and rotations, with the exponents -3 and -5 (Luke, Collins,
+  Blades, J. Comput. Phys. 231 (2012) 586-601).
+- *deform*: the same, but with the exponents -2 and -4, and with distant boundary nodes combined into groups.
+  If cells are folded, `deform` repeats the deformation in several steps; it did so {steps} times.
 
 Columns:
 
-- *folded grids*: number of grids with folded cells.
 - *first-cell change*: largest relative change of a first-cell height.
 - *angle increase*: largest increase of the largest cell corner angle of a grid.
 - *CPU*: CPU time to compute a new grid in memory, median / 90th percentile.
 
 """
 TAIL = """
-- `deform` folds no cells. IDW folds cells in 22 grids and IDW with rotations in 16 grids; most of these
-  grids are around blunt airfoils.
+- `deform` folds no cells. IDW folds cells in 22 grids, IDW with rotations in 16 grids.
 - For sharp airfoils and the flap, `deform` changes first-cell heights by less than 1e-6.
 - For blunt airfoils, all three methods change some first-cell heights near the corners of the trailing edge
   by more than 50 %.

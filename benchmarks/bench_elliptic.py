@@ -34,15 +34,13 @@ HEAD = """# Elliptic solvers: time, convergence, memory
 
 <!-- made by python benchmarks/bench_elliptic.py --largest 3200 --page docs/benchmarks/elliptic.md -->
 
-Use this page to find the CPU time, the convergence and the memory of `solve-pde` with the methods `winslow`,
-`thomas-middlecoff` and `steger-sorenson`. The cases are the six shapes of the MeshONet paper, NACA 0012 and
-channels. For the methods see [elliptic grids](../theory/elliptic.md).
-
-Measured on one thread of {processor}, while other programs used the machine.
+Use this page to find the CPU time, the convergence and the memory of the [elliptic
+solvers](../theory/elliptic.md), the methods `winslow`, `thomas-middlecoff` and `steger-sorenson` of
+`solve-pde`. The cases are the six shapes of the MeshONet paper, NACA 0012 and channels. Times are for one
+thread of {processor}.
 
 - *default*: the iteration stops when its error is below the discretisation error. *to 1e-8*: it stops when
   the residual is 1e-8 times the initial residual.
-- *cycles*: number of multigrid cycles.
 - *reduction per cycle*: residual after a multigrid cycle divided by the residual before it; geometric mean
   over the cycles.
 - *memory*: peak memory of the solver with the grid, in float64 numbers per node.
@@ -52,9 +50,9 @@ Measured on one thread of {processor}, while other programs used the machine.
 OTHERS = """
 ## Compared with other programs
 
-The table gives times in seconds for an elliptic grid, or for the most similar grid that the program makes.
-The times of the MeshONet paper (arXiv 2501.11937) and of Construct2D, a grid generator for airfoils, were
-measured on other machines. An empty cell means that no time is known.
+The table gives seconds for an elliptic grid, or for the most similar grid that the program makes. The times
+of the MeshONet paper (arXiv 2501.11937) and of Construct2D, a grid generator for airfoils, were measured on
+other machines. An empty cell means that no time is known.
 
 | program | 100x100 | 200x200 | 250x100 | 400x400 | 800x800 | 1600x1600 | 3200x3200 |
 | --- | --- | --- | --- | --- | --- | --- | --- |
@@ -66,27 +64,29 @@ measured on other machines. An empty cell means that no time is known.
 | gmsh, transfinite grid, without writing | | | | | | | 4.95 |
 """
 CONTROLS = """
-*prescribed first-cell height*: height at the south side, given by the nodes on the west and east sides.
-*median first-cell height*: median over the cells at the south side.
+The control functions of `--method thomas-middlecoff` continue the node distribution of the sides into the
+interior.
+
+- *prescribed first-cell height*: height at the south side, given by the nodes on the west and east sides.
+- *median first-cell height*: median over the cells at the south side.
 """
 CHANNELS_NOTE = """
-- *steger-sorenson*: control functions make grid lines normal to the walls. *--slide*: nodes move along the
-  walls until grid lines are normal to them.
+- *steger-sorenson*: control functions make grid lines normal to the walls. *winslow, --slide*: nodes move
+  along the walls until grid lines are normal to them.
 - *relative error of first-cell height*: maximum over both walls.
-- *largest angle to wall normal*: between the grid lines of the first cells and the wall normal.
+- *largest angle to wall normal*: angle between the grid lines that leave the walls and the wall normal.
 """
 CONCLUSIONS = """
 ## Conclusions
 
-- **Time**: by default two multigrid cycles suffice in every case. A Winslow grid takes 0.03 to 0.05 s on
-  400x400 nodes, and 3.5 to 4.0 s on 3200x3200 nodes. A residual of 1e-8 takes two to four times as long.
-- **Folded cells**: only Winslow's grids of the wrench have folded cells: 22 on 400x400 and 70 on 1600x1600
-  nodes. `solve-pde` then repairs them.
+- **Time**: by default a Winslow grid takes 0.03 to 0.05 s on 400x400 nodes, and 3.5 to 4.0 s on 3200x3200
+  nodes. A residual of 1e-8 takes two to four times as long.
+- **Folded cells**: only grids of the wrench have folded cells. `solve-pde` repairs them.
 - **First cells**: with the control functions of Thomas and Middlecoff the first cells on the arch have the
-  prescribed height; on the hexagon their median height is 1.8 times the prescribed one.
-- **Channels**: if nodes may move along the walls, use `winslow --slide` for grid lines normal to the walls.
-  The angles to the wall normal are at most 0.19 degrees; without `--slide` they are 6 to 37 degrees. `winslow
-  --slide` takes 81 to 195 ms, `steger-sorenson` takes 359 to 410 ms.
+  prescribed height. On the hexagon their median height is 1.8 times the prescribed height.
+- **Channels**: use `winslow --slide` for grid lines normal to the walls, if nodes may move along the walls.
+  The angles to the wall normal are then at most 0.19 degrees; without `--slide` they are 6 to 37 degrees.
+  `winslow --slide` takes 81 to 195 ms, `steger-sorenson` 359 to 410 ms.
 """
 
 

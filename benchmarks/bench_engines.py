@@ -39,19 +39,20 @@ HEAD = """# Parallel engines for batches
 <!-- made by python benchmarks/bench_engines.py --airfoils FOLDER --page docs/benchmarks/engines.md -->
 
 Use this page to choose an *engine*, which distributes the inputs of a batch over processes: Python's own
-processes, Dask or MPI. The tables compare the speed of the engines, and what is lost if a process is killed.
+processes (`--jobs`), Dask or MPI. It gives the speed of the engines, and what is lost if a process is killed.
 [Many grids on many machines](../guide/many-machines.md) explains how to use them.
 """
 SPEED = """
 ## Speed and memory
 
-The command is `meshonet infer sections --res 200x100 --part-size {size} -q -o grids.h5`. `sections` is a
-folder of {count} airfoil files.
+The command is `meshonet infer sections --res 200x100 --part-size {size} -q -o grids.h5`, with the options in
+the first column. `sections` is a folder of {count} airfoil files.
 
 - *elapsed time*: wall-clock time of the whole command. *CPU time*: sum over its processes.
 - *peak memory*: memory of the main process and, in brackets, of each worker. One of the three MPI processes
   is the main process.
-- The nodes of all grids are bitwise identical with every engine.
+
+All engines make bitwise identical grids.
 
 | engine | elapsed time, s | grids per second | speed-up | CPU time, s | peak memory, MB |
 | --- | ---: | ---: | ---: | ---: | ---: |
@@ -59,12 +60,12 @@ folder of {count} airfoil files.
 DEATHS = """
 ## Killed processes
 
-The command above generates grids for {count} airfoils, in part files of {size} grids. When a third of the
+The same command now makes grids for {count} airfoils, in part files of {size} grids. When a third of the
 parts are written, one process is killed (SIGKILL).
 
 - *parts written*: number of complete part files after the command has ended.
-- *parts generated later*: number of parts that the command then adds with `--skip-existing`. Afterwards all
-  nodes are bitwise identical to those of an undisturbed run.
+- *parts generated later*: number of parts that are added by the same command with `--skip-existing`. All
+  grids are then bitwise identical to those of an undisturbed run.
 
 | killed process | message of the command | exit code | parts written | parts generated later |
 | --- | --- | ---: | ---: | ---: |
@@ -74,9 +75,9 @@ TAIL = """
 
 - **Speed**: on one machine use `--jobs`. With two workers the speed-up is 2.02 with `--jobs 2`, 1.80 with
   Dask and 1.83 with MPI.
-- **A worker dies** (`--jobs`, Dask): nothing is lost; another worker generates its part again.
-- **The main process, the scheduler or an MPI process (rank) dies**: the command ends, and the parts written
-  until then remain. Repeat the command with `--skip-existing`.
+- **A worker of `--jobs` or of Dask dies**: nothing is lost. Another worker generates its part again.
+- **Another process dies** (the main process, the scheduler of Dask or an MPI process): the command ends, and
+  the parts written until then remain. Repeat the command with `--skip-existing`.
 """
 POINTS = 161
 ENVIRONMENT = {

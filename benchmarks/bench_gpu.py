@@ -41,23 +41,18 @@ Use this page to find the speed of batches of grids and of training on a GPU, an
 grids of the CPU. [Threads and GPUs](../guide/threads-and-gpu.md) explains how to use a GPU.
 
 `python benchmarks/bench_gpu.py --page docs/benchmarks/gpu.md` measures for at most eight minutes and writes
-this page. Rows that were not measured for lack of time are marked.
+this page, with three tables:
 
-- **Layers**: functions of `meshonet.layer`, which are solvers, and the network `quad-general`. The boundaries
-  are already in the memory of the GPU. *coarse=65*: the solver runs on 65 x 65 nodes, and its grid is
-  interpolated. *with gradients*: grids per second if gradients are computed too. *same bits*: whether two
+- **Layers**: the solvers `winslow` and `variational` of `meshonet.layer`, and the network `quad-general`. The
+  boundaries are already in the memory of the GPU. *coarse=65*: the solver runs on 65 x 65 nodes, and its grid
+  is interpolated. *with gradients*: grids per second if gradients are computed too. *same bits*: whether two
   runs give bitwise equal nodes.
 - **Operators**: `infer --device cuda` with three networks.
-- **Training**: shapes per second of three networks, for two batch sizes and with the options `--amp` and
-  `--compile`. Relative values are divided by those without these options. The time of compiling does not
-  count.
-- *MB*: peak memory of the GPU.
-- *distance*: largest distance of a node from the node that the CPU computes, relative to the size of the
-  domain. A distance above 1e-10 is marked TOO FAR.
+- **Training**: shapes per second, with and without the options `--amp` and `--compile`. The time of compiling
+  does not count.
 
-The aims are 100,000 grids of 65 x 65 nodes per second, one grid of 800 x 800 nodes in 3 ms, and one of
-3200 x 3200 nodes in 40 ms. For 3200 x 3200 nodes [the MeshONet paper](paper/index.md) reports 278 ms on an
-RTX 4090.
+*MB* is the peak memory of the GPU. *distance* is the largest distance of a node from the node that the CPU
+computes, relative to the size of the domain; above 1e-10 it is marked TOO FAR.
 """
 
 NONE = "This page has no figures yet: no GPU was available when it was made."

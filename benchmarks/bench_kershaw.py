@@ -30,16 +30,15 @@ HEAD = """# Kershaw's cube
 
 Use this page to compare `solve-pde --energy shape` with TMOP, the mesh optimiser of [MFEM](https://mfem.org),
 in grid quality and in CPU time of one thread. The case is Kershaw's map of the unit cube, which shears and
-compresses the cells in six layers. A parameter ε prescribes the compression: ε = 1 gives the uniform grid,
-and a smaller ε a stronger compression.
+compresses the cells in six layers. The smaller its parameter ε, the stronger is the compression; ε = 1 gives
+the uniform grid.
 
-- *Kershaw's grid*: the grid of the cube by this map. Its six faces are the input of meshonet, which keeps
-  their nodes.
+- *Kershaw's grid*: the grid of the cube by this map. meshonet gets its six faces and keeps their nodes.
 - *TMOP*: MFEM's mini-app `mesh-optimizer` with `-mid 303 -tid 1`, started from Kershaw's grid. Its Newton
   method takes at most 100 MINRES iterations per step.
 - *objective*: mean over the cells of the integral of |**T**|² / (3 det(**T**)^⅔) − 1, which is 0 for cubes.
-  `--energy shape` and TMOP minimise it. **T** is the Jacobian matrix of the map from a reference cube to the
-  cell, |**T**| its Frobenius norm. TMOP calls the integrand metric 303.
+  **T** is the Jacobian matrix of the map from a reference cube to the cell, |**T**| its Frobenius norm.
+  `--energy shape` and TMOP minimise this objective (metric 303 of TMOP).
 - *deviation*: largest deviation from 90 degrees of the three angles at a cell corner; mean and 99th
   percentile over all corners.
 - *scaled Jacobian*: minimum over the cell corners.
@@ -49,11 +48,10 @@ TAIL = """
 
 - **Same minimum**: with fixed boundary nodes `--energy shape` reaches the objective 0.48074 in 0.19 s, TMOP
   reaches 0.48073 in 62.51 s.
-- **Sliding boundary nodes**: if TMOP lets them slide in the faces, it reaches the uniform grid. meshonet
-  never moves the nodes on the faces of a volume.
-- **Default**: use `--energy angles` for angles near 90 degrees and gradual changes of edge length. Its mean
-  deviation is 19.1 degrees, that of `--energy shape` 29.7 degrees. `--energy angles` does not penalise large
-  aspect ratios.
+- **Sliding boundary nodes**: TMOP can let them slide in the faces, and then reaches the uniform grid.
+  meshonet never moves the nodes on the faces of a volume.
+- **Default**: use `--energy angles` for angles near 90 degrees. Its mean deviation is 19.1 degrees, that of
+  `--energy shape` 29.7 degrees. `--energy angles` does not penalise large aspect ratios.
 """
 HEADS = (
     "| grid | objective | folded cells | minimum scaled Jacobian "

@@ -38,31 +38,32 @@ HEAD = """# Grids in torch: accuracy and time
 <!-- made by python benchmarks/bench_layers.py; rows of about 32 grids with --count 32 -->
 
 Use this page to find how exact and how fast the functions of [`meshonet.layer`](../guide/layers.md) are,
-which generate grids in torch. Their grids are compared with those of the compiled solvers, on one thread.
+which generate grids in torch. Their grids are compared with those of the compiled solvers. CPU times are for
+one thread.
 
-The shapes are random: airfoils for `conformal`, four-sided domains for all other functions. The sides are
-given in double precision (*64 bits*), or rounded to single precision (*32 bits*). The compiled solvers
-compute with the same sides, rounded or not.
+The shapes are random: airfoils for `conformal`, four-sided domains for all other functions. The boundary
+nodes are given in double precision (*64 bits*), or rounded to single precision (*32 bits*). The compiled
+solvers get the same boundary nodes.
 
 - *distance*: largest distance between a node of `meshonet.layer` and the node of the compiled solver,
   relative to the domain size.
-- *folded*: grids of `meshonet.layer` with folded cells. *folded in torch only*: folded grids of
-  `meshonet.layer` for which the grid of the compiled solver has no folded cells.
-- *CPU ms*: CPU time to compute a grid, in milliseconds. *gradient*: CPU time of the gradient with respect to
-  all boundary nodes, divided by the CPU time of the grids.
+- *folded*: grids of `meshonet.layer` with folded cells. *folded in torch only*: those of them for which the
+  grid of the compiled solver has no folded cells.
+- *CPU ms*: CPU time to compute a grid, in milliseconds.
+- *gradient*: CPU time of the gradient with respect to all boundary nodes, divided by the CPU time of the
+  grids.
 
-Random seeds that give no valid domain, and airfoils without a conformal map, are left out. Rows with about
-30 grids use the first 32 shapes only.
+Airfoils without a conformal map are left out. Rows with about 30 grids use the first 32 shapes only.
 """
 
 TAIL = """
-- In double precision, the grids agree with those of the compiled solvers to 2e-11; in single precision, to
-  the rounding error of the nodes, 6e-8.
+- In double precision, the grids agree with those of the compiled solvers to 2e-11. In single precision, they
+  agree to the rounding error of the nodes, 6e-8.
 - `meshonet.layer` folds no cells that the compiled solvers do not fold. `solve-pde` repairs folded cells;
   `meshonet.layer` does not.
 - A gradient takes 0.15 to 1.8 times the CPU time of the grids.
-- `solve-pde` stops before it reaches the exact solution of the variational and of the conformal method. For
-  this table, its iterations continue to the exact solution.
+- The compiled `variational` and `conformal` solvers were converged for this table; in `solve-pde` they stop
+  earlier.
 """
 
 FUNCTIONS = "transfinite,winslow,variational,conformal"

@@ -30,23 +30,23 @@ HEAD = """# Volumes marched from surfaces: quality and time
 
 <!-- made by python benchmarks/bench_marching.py --page docs/benchmarks/marching-surfaces.md -->
 
-Use this page to find the quality and the CPU time of volumes that `solve-pde --method hyperbolic` marches
-from surfaces. The cases are four surfaces from files and ten generated surfaces. For the method see [marching
-from surfaces](../guide/marching-surfaces.md).
+Use this page to find the quality and the CPU time of volumes that `solve-pde --method hyperbolic` [marches
+from surfaces](../guide/marching-surfaces.md). The cases are four surfaces from files and ten generated
+surfaces. Times are for one thread of {machine}.
 
-Measured on one thread of {machine}, while other programs used the machine.
-
-- *bwb*: blended wing body. *m6_small*: ONERA M6 wing. *star*, *dented*: deformed spheres. *wing, ring and
-  core*: wing whose tip is a patch with a ring of patches around it. The first four surfaces are read from
-  files.
+- *bwb*: blended wing body. *m6_small*: ONERA M6 wing. These two, *even_sphere* and *uneven_sphere* are read
+  from files.
+- *star*, *dented*: deformed spheres. *wing, ring and core*: wing whose tip is a patch with a ring of patches
+  around it.
 - *levels*: number of nodes along a grid line from the surface to the far field.
 - *first-cell height*, *distance of the far field*: prescribed values, in the length unit of the surface.
 - *folded cells*: cells in which a corner Jacobian, or a Bezier coefficient of the Jacobian, is not positive.
 - *relative error of first-cell height*: maximum over the nodes of the surface.
-- *angle off the normal*: angle between a grid line from the surface and the normals of the grid surfaces that
-  it crosses.
-- *growth*: ratio of the heights of adjacent cells along a grid line, minus 1. *prescribed growth*: follows
-  from first-cell height, levels and distance of the far field. *largest growth*: maximum over the volume.
+- *angle off the normal*: deviation from 90 degrees of the angles between a grid line from the surface and the
+  edges of the levels that it crosses.
+- *growth*: ratio of the heights of adjacent cells along a grid line, larger over smaller, minus 1.
+  *prescribed growth*: follows from first-cell height, levels and distance of the far field. *largest growth*:
+  maximum over the volume.
 - *CPU time*: time to march and to test the volume, without reading and writing, best of 3 runs.
 
 """
@@ -60,10 +60,9 @@ CONCLUSIONS = """
 ## Conclusions
 
 - **Valid cells**: no volume has folded cells. First-cell heights are exact to 1e-9.
-- **Time**: the blended wing body, with 1.1 million nodes, takes 1.04 s; the sphere with 0.4 million nodes
-  takes 0.19 s.
+- **Time**: the blended wing body, with 1.1 million nodes, takes 1.04 s.
 - **Growth**: from spheres and deformed spheres with a prescribed growth of 0.164, the largest growth is 0.17
-  to 0.21. At the sharp edges of the blended wing body the prescribed growth is 0.253, the largest 0.81.
+  to 0.21. At the sharp edges of the blended wing body it is 0.81, where 0.253 is prescribed.
 - **Angles**: the mean angle off the normal is at most 2.7 degrees, except at concave corners and on the
   sphere with 98 nodes.
 """

@@ -226,11 +226,11 @@ HEAD = """# All methods compared: airfoils and four-sided domains
 
 <!-- made by python benchmarks/bench_operator.py --page docs/benchmarks/o-grids.md (make bench) -->
 
-Use this page to compare the quality and the CPU time of grids by solvers and by neural networks: O grids
-around airfoils, and grids in four-sided domains. For short advice see [choosing a
+Use this page to compare solvers and neural networks by the quality of their grids and by CPU time. The grids
+are O grids around airfoils, and grids in four-sided domains. For short advice see [choosing a
 method](../start/choosing-a-method.md).
 
-Measured on {machine}, while other programs used the machine.
+Measured on {machine}.
 
 Rows of the tables; bold rows are `infer` and the networks:
 
@@ -248,21 +248,21 @@ Rows of the tables; bold rows are `infer` and the networks:
 
 Terms and columns:
 
-- *procedural airfoils*: random airfoils that a formula generates; none was used to train a network. Brackets
-  in headings: number of shapes, including those without a converged solution of Winslow's equations, which
-  are left out of the tables.
-- *spacing*: law by which the wall nodes are distributed (`--spacing`).
+- *procedural airfoils*: random airfoils that a formula generates; none was used to train a network.
+  *spacing*: law of the wall nodes (`--spacing`).
+- *(60)* in a heading: number of shapes. The tables leave out those without a converged solution of Winslow's
+  equations.
 - *grids without folded cells*: share of the grids, before repair.
-- *reference grid*: Winslow's converged solution, extrapolated from two grids; the finer of them has 2 or 4
-  times as many cells in each direction as the tested grid. With uniform spacing of the wall nodes the error
-  of the reference grid is about 1e-4. For the rows *variational* and *quad-general* the reference grid is
-  that of the row *variational, all nodes*.
-- *distance*: root mean square distance of the nodes from their places in the reference grid, divided by the
-  root mean square distance of the reference nodes from the centre of the shape. *near the wall*: only nodes
-  within 1.5 chords of the centre of the airfoil; in four-sided domains, the tenth of the rows next to each
-  side. For TFI the distance does not measure quality.
-- *largest angle*, *mean angle*: maximum and mean, over the cells, of the largest angle of a cell. *relative
-  to Winslow*: divided by the value of Winslow's converged grid on the same boundary. Smaller is better.
+- *distance*: root mean square distance of the nodes from those of a reference grid, divided by the root mean
+  square distance of the reference nodes from the centre of the shape.
+- *reference grid*: Winslow's converged solution, extrapolated from two finer grids. With uniform spacing its
+  error is about 1e-4. For the rows *variational* and *quad-general* the reference grid is that of the row
+  *variational, all nodes*.
+- *near the wall*: only nodes within 1.5 chords of the centre of the airfoil. In four-sided domains: the tenth
+  of the rows next to each side.
+- *largest angle*, *mean angle*: each cell has a largest angle. The columns give the maximum and the mean of
+  these angles over the cells. *relative to Winslow*: divided by the value of Winslow's converged grid on the
+  same boundary. Smaller is better.
 - *CPU time*: time to generate the grid, without reading, writing and repair; median over the shapes.
 """
 FAMILIES_NOTE = """
@@ -272,13 +272,13 @@ Each row is for six shapes of a family of the MeshONet paper (arXiv 2501.11937).
 distance of all nodes from Winslow's converged solution and, in brackets, the number of grids with folded
 cells.
 
+- *interpolation*, *extrapolation*: shapes inside and outside the range of the training shapes of MeshONet.
 - *network*: `quad-winslow` for the first four families, `airfoil-o` for the airfoil, and `hole-winslow` for
   the plate with a hole. These networks were not trained on the families.
 - *network, polished*: 2 multigrid cycles after the network; for the airfoil, `infer` without options.
-- *MeshONet*, *MeshONet-hard*: the network of the paper, and a similar network whose boundary nodes are
-  exactly the given nodes; [both](paper/index.md) were trained on 30 shapes of each family. In these two
-  columns the distance is from the grid of `solve-pde` with 101x101 nodes, without extrapolation.
-- *interpolation*, *extrapolation*: shapes inside and outside the range of the training shapes of MeshONet.
+- *MeshONet*: the network of the paper. *MeshONet-hard*: a similar network that keeps the given boundary
+  nodes. [Both](paper/index.md) were trained on 30 shapes of each family. For both the distance is from the
+  grid of `solve-pde` with 101x101 nodes.
 """
 TIMES_HEAD = """
 ## CPU time in milliseconds, best of 3
@@ -291,16 +291,15 @@ WHICH = """
 ## Conclusions
 
 - **Airfoils**: use `infer`. For 39 airfoil files on 200x200 nodes the median time is 3.9 ms with `infer`, 6.2
-  ms with the polished network and 8.9 ms with Winslow's equations on all nodes. In every table of airfoils
-  on 200x200 nodes the median distance near the wall is smaller with `infer` than with the network alone.
-- **Large O grids**: on 800x800 nodes `infer` takes 14 ms, Winslow's equations on all nodes 153 ms.
-- **Folded cells**: no grid by `infer` around 100 procedural airfoils has folded cells before repair. Of
+  ms with the polished network and 8.9 ms with Winslow's equations on all nodes. Near the wall `infer` is
+  closer to the reference grid than the network alone, in every table of airfoils on 200x200 nodes.
+- **Folded cells**: none of 100 grids of `infer` around procedural airfoils has folded cells before repair. Of
   Winslow's grids 5 to 31 % have some, depending on the spacing law.
 - **Four-sided domains**: use the variational method. On 65x65 nodes its mean angle is 7 % smaller than that
   of Winslow's grids, and no variational grid has folded cells. The method takes 8.6 ms, or 5.4 ms with
   `--coarse 33`.
 - **Batches**: in four-sided domains `quad-general` takes 2.6 ms for one grid of 65x65 nodes, and less per
-  grid in a batch ([measurements](quad-operator.md)). Around airfoils a batch saves hardly any time per grid.
+  grid in a batch ([measurements](quad-operator.md)).
 """
 
 if __name__ == "__main__":

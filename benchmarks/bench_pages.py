@@ -43,15 +43,14 @@ OTHERS = """
 ## Comparison with other libraries
 
 Each library writes a page of the grid of 401 x 251 nodes, with grid lines and coloured by one cell metric.
-meshonet was timed again.
-*Metrics in the page*: the metrics that a user can show.
+meshonet was timed again. *Metrics in the page*: the metrics that a user of the page can choose.
 
 | library | size, MB | time to write, s | time to display, s | metrics in the page |
 | --- | --- | --- | --- | --- |
 """
 TAIL = """
-- The page of meshonet is at most a fifth as large as the pages of the other libraries, and is displayed in
-  at most an eighth of their time.
+- The page of meshonet is at most a fifth as large as the pages of the other libraries. It is displayed in at
+  most an eighth of their time.
 - Only the page of meshonet has a list of the worst cells and switches that hide blocks.
 """
 PLANES = ((101, 101), (401, 251), (1251, 801))

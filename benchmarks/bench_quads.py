@@ -208,11 +208,11 @@ def families(twin: str) -> str:
 FAMILIES = """
 ## Shapes of the MeshONet paper, 101 x 101
 
-Each entry is the median distance to Winslow's solution for six shapes of a [family](../reference/families.md)
-and, in brackets, the number of these six grids that have folded cells. *MeshONet* is the paper's network and
-*MeshONet-hard* a variant. Both were trained on 30 shapes of each family ([the reproduction](paper/index.md));
-*interpolation* shapes are inside the range of this training, *extrapolation* shapes outside. `quad-winslow`
-was not trained on the families. Winslow's own grids of the wrench have folded cells.
+Each row is for six shapes of a [family](../reference/families.md). An entry is the median distance to
+Winslow's solution and, in brackets, the number of grids with folded cells. *MeshONet* is the network of the
+paper, *MeshONet-hard* a variant of it. Both were [trained](paper/index.md) on 30 shapes of each family,
+`quad-winslow` on none. *interpolation* shapes are inside the range of the training shapes, *extrapolation*
+shapes outside. Winslow's own grids of the wrench have folded cells.
 
 | family | quad-winslow --polish off | quad-winslow --polish 1 | MeshONet | MeshONet-hard |
 | --- | --- | --- | --- | --- |"""
@@ -220,24 +220,23 @@ HEAD = """# The neural operator for four-sided domains: accuracy and time
 
 <!-- made by python benchmarks/bench_quads.py --page docs/benchmarks/quad-operator.md -->
 
-Use this page to decide whether the grids of `infer --model quad-general` are good enough for your batches of
-four-sided domains. The page compares the neural operators `quad-general` and `quad-winslow` with the solvers
-whose grids they predict, on random domains, an arch, and the shapes of the MeshONet paper. CPU times are
-medians, for one thread on a machine that other programs also used.
+Use this page to decide whether the grids of the neural network `quad-general` are good enough for your
+batches of four-sided domains. `quad-general` predicts the grid of the variational solver. A second output of
+the same [network](../theory/operators.md), `quad-winslow`, predicts the grid of Winslow's solver. The page
+compares both with the solvers, on random domains, an arch, and the shapes of the MeshONet paper. CPU times
+are medians, for one thread.
 
 - *TFI*: transfinite interpolation.
-- *Winslow* and *variational*: solvers, `solve-pde --method winslow` and `--method variational`.
-- *--coarse n*: the solver runs on n x n nodes, and its grid is interpolated.
-- *quad-general* and *quad-winslow*: predictions of the variational grid and of Winslow's grid, by one
-  [network](../theory/operators.md) with two outputs.
-- *--polish n*: solver iterations after the network: n iterations of the variational method for
-  `quad-general`, n multigrid cycles for `quad-winslow`. *off*: none.
-- *valid*: share of grids without folded cells, before the repair that `infer` and `solve-pde` make.
-- *largest angle* and *mean angle*: maximum and mean, over all cells of a grid, of the largest angle in each
-  cell. The tables give averages over the domains.
-- *gain in mean angle*: 0 % is the mean angle of Winslow's grids, 100 % that of variational grids. A gain can
-  exceed 100 %, because the variational method does not minimise the mean angle itself. Domains whose Winslow
-  grid has folded cells do not count.
+- *Winslow*, *variational*: the solvers `solve-pde --method winslow` and `solve-pde --method variational`.
+- *--coarse n*: the solver runs on n x n nodes, and its grid is interpolated to all nodes.
+- *--polish n*: n solver iterations after the network. They are iterations of the variational solver for
+  `quad-general`, multigrid cycles of Winslow's solver for `quad-winslow`. *off*: none.
+- *valid*: share of grids without folded cells, before `infer` or `solve-pde` repairs them.
+- *largest angle*, *mean angle*: each cell has a largest angle. The columns give the maximum and the mean of
+  these angles over the cells of a grid, averaged over the domains.
+- *gain in mean angle*: 0 % is the mean angle of Winslow's grids, 100 % that of variational grids. Domains
+  whose Winslow grid has folded cells do not count. A gain can exceed 100 %, because the variational method
+  does not minimise the mean angle itself.
 - *distance*: relative L2 distance to the converged solution of Winslow's equations.
 """
 TAIL = """
@@ -249,13 +248,10 @@ TAIL = """
 - **Batches**: use `infer --model quad-general --polish off`. A grid takes 1.1 ms in a batch, and 8.4 ms with
   the solver. Up to 0.9 % of the grids have folded cells, which `infer` repairs. With `--polish 2` all 372
   grids of the first three tables are valid, and a grid takes 5.5 ms in a batch.
-- **Python**: `load("quad-general").solve(boundaries, "off", dtype="float32")` takes 0.6 ms of CPU time per
-  grid. `threads=2` adds a second thread, which does not change the grids.
-- **Winslow's grid**: use `solve-pde`. On 65 x 65 nodes, Winslow's solver takes 2.8 ms and `quad-winslow`
-  4.0 ms. On 385 x 385 nodes, *Winslow --coarse 65* and `quad-winslow` take 4.8 and 4.5 ms, and their median
-  distances are 2.0e-04 and 1.7e-04.
-- **Shapes of the paper**: `quad-winslow --polish off` is closer to Winslow's solution than MeshONet in all
-  eight rows, and closer than MeshONet-hard in seven.
+- **Single precision**: in Python `load("quad-general").solve(boundaries, "off", dtype="float32")` takes 0.6
+  ms of CPU time per grid. 
+- **Winslow's grid**: use `solve-pde`. On 65 x 65 nodes, Winslow's solver takes 2.8 ms and `quad-winslow` 4.0
+  ms.  On 385 x 385 nodes, `quad-winslow` is about as fast and as accurate as *Winslow --coarse 65*.
 """
 
 if __name__ == "__main__":

@@ -37,22 +37,21 @@ HEAD = """# Blade rows
 <!-- made by python benchmarks/bench_rows.py --row TOML --airfoils FOLDER --page docs/benchmarks/rows.md -->
 
 Use this page to find the quality and the CPU time of grids of [blade rows](../guide/blade-rows.md): of Rotor
-37, of random axial rows and of random radial rows. The processor is {machine}; one thread is used, while
-other programs run.
+37, of random axial rows and of random radial rows. Times are for one thread of {machine}.
 
-- *folded cells*: cells in which a Bezier coefficient of the Jacobian is not positive. If all coefficients of
-  a cell are positive, the Jacobian is positive everywhere in the cell.
+- *folded cells*: cells in which a Bezier coefficient of the Jacobian is not positive. Without such cells the
+  Jacobian is positive everywhere.
 - *scaled Jacobian*: smallest [scaled Jacobian](../reference/metrics.md#cells-of-volumes) of the cells.
 - *largest angle*: largest angle of the cell faces.
 - *first-cell error*: largest relative error of a first-cell height over all walls.
-- *growth*: ratio of the lengths of consecutive edges of a grid line, longer over shorter, also across block
-  interfaces.
+- *growth*: ratio of the lengths of adjacent edges along a grid line, larger over smaller. Grid lines continue
+  from block to block.
 - *distance from the blade*: largest distance of a blade node from the surface through the given profiles.
 
 ## Rotor 37
 
-Rotor 37 is NASA's transonic compressor rotor, with a tip gap of 0.356 mm. Its grids differ in `--cells`; the
-first-cell height is {first:g} chords, and `--growth` is 1.2.
+Rotor 37 is NASA's transonic compressor rotor, with a tip gap of 0.356 mm. The two grids differ in `--cells`.
+The first-cell height is {first:g} chords, and `--growth` is 1.2.
 
 | nodes | folded cells | scaled Jacobian | largest angle, degrees | first-cell error \
 | growth: 99.9th percentile / largest | distance from the blade, chords | CPU time, s |
@@ -73,8 +72,8 @@ These properties are random:
 | tip gap | up to 3 % of the span in two of three rows; the others have no gap |
 
 Radial rows are centrifugal impellers, radial turbines, mixed-flow pumps and vaned diffusers. All grids are
-made with `--cells {cells}` and first-cell heights of {first:g} chords; grids get more cells if the layers
-need them.
+made with `--cells {cells}`, or more cells if the layers need them, and first-cell heights of {first:g}
+chords.
 
 | rows | valid grids | nodes, median | scaled Jacobian: median / worst \
 | largest angle, degrees: median / worst | first-cell error \

@@ -53,9 +53,8 @@ Use this page to find how much a second thread speeds up one large grid. The tab
 solvers and of whole commands. [Threads and GPUs](../guide/threads-and-gpu.md) explains how to set the number
 of threads.
 
-- *1 thread*, *2 threads*: minimum of several runs. *speed-up*: ratio of the two minima.
-- *without file access*: the command without reading and writing files.
-- For all rows, the grids with one and with two threads are bitwise identical.
+*1 thread* and *2 threads* are the shortest of several runs; *speed-up* is their ratio. The times of commands
+are without reading and writing files. One and two threads make bitwise identical grids.
 """
 
 WHY = """
@@ -63,11 +62,9 @@ WHY = """
 
 - **Solvers**: with two threads Winslow's solver is 1.42 to 1.65 times as fast, hyperbolic marching 1.45 to
   1.69 times, and the variational method in two dimensions 1.89 times.
+- **Volumes by the variational method** gain nothing, because the method iterates on 33³ nodes only.
 - **Commands**: two threads speed up `tfi` by a factor of 1.36 and `infer` of a duct by 1.59. `infer` of an
-  airfoil and commands with a first-cell height gain nothing: their speed-up is 0.90 to 1.03. For many such
-  grids use `--jobs`.
-- **Why less than 2**: one thread executes some steps alone, and the threads share the memory bandwidth.
-- **Variational volumes**: the method iterates on 33³ nodes only, and a second thread gains nothing.
+  airfoil and commands with a first-cell height gain nothing. For many such grids use `--jobs`.
 """
 
 Work = Callable[[], Callable[[], object]]

@@ -216,32 +216,27 @@ def page(rows: list[Row]) -> str:
 
 NOTE = """\
 Read this page to choose `--batch` and `--points` of `meshonet train --model meshonet`. The page compares the
-speed and the loss of six training loops for the network of the MeshONet paper
-([paper models](../theory/paper-models.md)), on 30 arches of 101 x 101 nodes. Times are CPU times of one
-thread on a machine that other programs also used.
+speed and the loss of six training loops for [the network of the MeshONet paper](../theory/paper-models.md),
+on 30 arches (geometries) of 101 x 101 nodes. Times are CPU times of one thread.
 
-- *one geometry per step*: the scheme of the paper. The loss of a step uses *all points* of the grid or *1,200
-  random points*; the paper does not say which. Geometries come in turn; the learning rate is 0.001.
-- *--batch B --points P*: a step uses B random geometries and P random points; the learning rate is 0.004.
+- *one geometry per step*: the scheme of the paper. A step uses *all points* of the grid or *1,200 random
+  points*; the paper does not say which. The learning rate is 0.001.
+- *--batch B --points P*: a step uses B random geometries and P random points. The learning rate is 0.004.
 - *speed*: geometries that training uses per second, best of twelve rounds of 25 steps.
 - *relative speed*: speed divided by the speed of *one geometry per step, 1,200 random points*.
-- *loss after n geometries*: loss over all points of all grids, after training steps with n geometries
-  altogether. Values with brackets are medians of several random seeds, with minimum and maximum. A dash means
-  not measured.
+- *loss after n geometries*: loss over all points of all grids, after as many steps as use n geometries. Three
+  values are the median (minimum to maximum) of several random seeds. A dash means not measured.
 """
 TAIL = """
 ## Conclusions
 
-- **Speed**: `meshonet train` with batches uses 11 to 44 times as many geometries per second as *one geometry
-  per step, 1,200 random points*. Over whole training runs the ratio was 9 to 34.
-- **Loss per geometry**: larger batches make fewer steps, so the loss falls later. After 6,000 geometries the
-  loss is 0.76 with batches of 5, 2.54 with batches of 30, and 0.70 with one geometry per step and 1,200
-  points.
-- **Loss per second**: use batches. With batches of 30, 15 and 10 the loss is 0.98, 0.70 and 0.64 after 15,000
-  geometries, in 5, 8 and 10 s. With one geometry per step the loss is 0.97 after 1,500 geometries and 21 s
-  (1,200 points), and 0.88 after 600 geometries and 22 s (all points).
-- **Options**: on this processor a step with 30 geometries takes 7.5 ms with and without `--compile`, and
-  15.4 ms with `--amp`. Neither option has been timed on a GPU.
+- **Use batches**: with batches of 30, 15 and 10 the loss is 0.98, 0.70 and 0.64 after 15,000 geometries, in
+  5, 8 and 10 s. With one geometry per step and 1,200 points the loss is 0.97 after 21 s. With one geometry
+  per step and all points it is 0.88 after 22 s.
+- **Speed**: batches use 11 to 44 times as many geometries per second as *one geometry per step, 1,200 random
+  points*.
+- **Options**: on this processor a step with 30 geometries takes 7.5 ms with and without `--compile`, and 15.4
+  ms with `--amp`. Neither option has been timed on a GPU.
 """
 
 

@@ -223,9 +223,9 @@ HEAD = """# Four-sided domains: TFI, Winslow and variational grids
 <!-- made by python benchmarks/bench_variational.py --page docs/benchmarks/variational.md -->
 
 Use this page to choose between `tfi`, `solve-pde --method winslow` and `solve-pde --method variational`, and
-the number of nodes for `--coarse`. It compares angles and CPU times of grids in four-sided domains and around
-NACA airfoils, on one thread, while other programs used the machine. For the methods see [elliptic
-grids](../theory/elliptic.md) and [variational grids](../theory/variational.md).
+the number of nodes for `--coarse`. The grids are in four-sided domains and around NACA airfoils. CPU times
+are for one thread. For the methods see [elliptic grids](../theory/elliptic.md) and [variational
+grids](../theory/variational.md).
 
 - *arch*, *hexagon*, *wrench*: shapes of the MeshONet paper (arXiv 2501.11937). *bump*: a square with a half
   disc cut off.
@@ -234,13 +234,12 @@ grids](../theory/elliptic.md) and [variational grids](../theory/variational.md).
 - *infer*: `infer` without options, which solves Winslow's equations after a conformal map.
 - *NACA 0012-sharp*: NACA 0012 with a closed trailing edge. *O*, *C*: topology of the grid.
 - *folded cells*: number before repair.
-- *maximum*, *99th percentile*, *mean*: over the cells of the grid; for random domains, these values are
-  averaged over the domains. The maximum is at least the largest corner angle of the boundary (arch 147.5
-  degrees, hexagon 135 degrees).
-- *deviation from 90 degrees at the sides*: mean for the grid lines that leave the four sides.
-- *distance to the solution on all nodes*: relative L2 distance from the grid by `winslow` or by `variational`
-  without `--coarse`; the grid by `quad-general` is compared with the grid by `variational`. Empty if this
-  grid was not computed on all nodes.
+- *maximum*, *99th percentile*, *mean*: over the cells of the grid; for random domains, averages of these
+  values. The maximum cannot be below the largest corner angle of the boundary (arch 147.5 degrees, hexagon
+  135 degrees).
+- *deviation from 90 degrees at the sides*: mean over the grid lines that leave the four sides.
+- *distance to the solution on all nodes*: relative L2 distance from the grid of the same method without
+  `--coarse`. For `quad-general`: from the grid of `variational`.
 - *grids worse than Winslow's*: number of grids whose maximum or mean is larger than in Winslow's grid.
 - *CPU time*: best of several runs; for random domains, the median over the domains.
 
@@ -249,12 +248,13 @@ grids](../theory/elliptic.md) and [variational grids](../theory/variational.md).
 CONCLUSIONS = """
 ## Conclusions
 
-- **Angles**: on 52 random domains of 129 x 129 nodes, the mean of the largest angles of the cells is 96.0
-  degrees in variational grids, 106.4 in Winslow's grids and 111.6 in TFI grids.
-- **Folded cells**: on these domains no variational grid has folded cells; 2 of Winslow's grids and 6 TFI
-  grids have some.
-- **Time**: on these domains the variational method takes 15.8 ms, Winslow's equations take 5.5 ms. With
-  `--coarse 33` the variational method takes 5.0 ms, and one grid has folded cells.
+The first three conclusions are for 52 random domains of 129 x 129 nodes.
+
+- **Angles**: the mean of the largest angles of the cells is 96.0 degrees in variational grids, 106.4 in
+  Winslow's grids and 111.6 in TFI grids.
+- **Folded cells**: no variational grid has folded cells; 2 of Winslow's grids and 6 TFI grids have some.
+- **Time**: the variational method takes 15.8 ms, Winslow's equations take 5.5 ms. With `--coarse 33` the
+  variational method takes 5.0 ms, and one grid has folded cells.
 - **Fine grids**: on 800 x 800 nodes `variational --coarse 129` takes 21 to 58 ms, `variational` takes 479 to
   642 ms. The mean angles of the two grids differ by at most 0.1 degrees.
 - **Airfoils**: for O grids use `infer`, which takes 3 to 4 ms; a variational O grid takes 39 to 46 ms. For C

@@ -43,21 +43,20 @@ ROWS: tuple[tuple[str, Kind, dict[str, float]], ...] = (
     ("blades", "blade", {"first_cell": 1e-5}),
 )
 NOTE = """
-- The first-cell heights of wings are exact to rounding.
-- The default grids take more CPU time than the fine grids: without `--layers`, `stack` repeats the marching
-  until the cells grow by a factor of at most 1.2.
+The default grids take more CPU time than the fine grids: without `--layers`, `stack` repeats the marching
+until the cells grow by a factor of at most 1.2.
 """
 HEAD = """# Volumes from sections: wings, blades, pipes
 
 <!-- made by python benchmarks/bench_wings.py --airfoils FOLDER --page docs/benchmarks/wings.md -->
 
 Use this page to find the quality and the CPU time of volume grids of random [wings](../guide/wings.md), of
-random blades between two walls, and of three [pipes](../guide/pipes.md). The processor is {machine}; one
-thread is used, while other programs run.
+random blades between two walls, and of three [pipes](../guide/pipes.md). Times are for one thread of
+{machine}.
 
-Each of {count} wings has two sections, drawn from {files} airfoil files. The taper is 0.25 to 1 and the
-twist -8 to 4 degrees. The tip is displaced by -0.2 to 0.8 spans downstream and by -0.1 to 0.25 spans
-upwards. The {count} blades are drawn in the same way.
+Each of {count} wings has two sections, drawn from {files} airfoil files. The taper is 0.25 to 1 and the twist
+-8 to 4 degrees. The tip is displaced by -0.2 to 0.8 spans downstream and by -0.1 to 0.25 spans upwards. The
+{count} blades are drawn in the same way.
 
 | name | nodes around a section | nodes along the span | nodes from the wall to the far field \
 | first-cell height, chords | far field, chords |
@@ -152,8 +151,7 @@ def pipes() -> str:
         "knot, closed": (knot, 0.4),
     }
     lines = ["", "## Pipes", "",
-             "A circular section is swept along each path. It consists of a square block and a ring of four "
-             "blocks.", "",
+             "A circle, divided into a square block and a ring of four blocks, is swept along each path.", "",
              "| path | folded cells | nodes | scaled Jacobian | largest angle, degrees | CPU time, ms |",
              "| --- | --- | --- | --- | --- | --- |"]  # fmt: skip
     for name, (points, radius) in paths.items():

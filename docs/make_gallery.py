@@ -39,8 +39,9 @@ TABLE = """# Multi-block grids of thirty domains
 
 <!-- made by python docs/make_gallery.py (make gallery) -->
 
-Use this page to find the number of blocks and the grid quality for a domain similar to yours. The domains are
-those of the [gallery](../gallery/domains.md). The command is `meshonet solve-pde DOMAIN.geojson --cells 900`.
+Use this page to find the number of blocks and the grid quality for a domain similar to yours. The
+[gallery](../gallery/domains.md) shows the domains. The command is `meshonet solve-pde DOMAIN.geojson --cells
+900`.
 
 - *irregular vertices*: interior nodes at which more or fewer than four cells meet.
 - *deviation*: deviation of cell corner angles from 90 degrees.

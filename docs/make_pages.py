@@ -6,7 +6,6 @@ Pictures: make_pictures.py.
 """
 
 import ast
-import csv
 import json
 from pathlib import Path
 from typing import Any
@@ -51,10 +50,13 @@ ERRORS_HEAD = """# Held-out errors of the shipped models
 
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
-Look here for the accuracy of the neural networks (models) that are part of meshonet: the distance between
-grids of a model and grids of the solver, on *held-out* shapes, which were not used in training. The training
-parameters are in [shipped models](../reference/models.md); `meshonet models NAME` prints errors and
-parameters.
+Look here for the accuracy of the neural networks (models) that are part of meshonet. The errors are distances
+between grids of a model and grids of a solver, on *held-out* shapes, which were not used in training.
+`meshonet models NAME` prints the same errors. The training parameters are in [shipped
+models](../reference/models.md).
+
+In the tables, the *initial grid* or *base* is the grid that a network corrects, and *valid* grids have no
+folded cells.
 """
 C_GRIDS = """## C grids: no model
 
@@ -207,16 +209,10 @@ def curve(name: str) -> list[str]:
     path = DOCS / "benchmarks" / "curves" / f"{name}.csv"
     if not path.exists():
         return []
-    with path.open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    some = [rows[k] for k in sorted({0, len(rows) // 4, len(rows) // 2, len(rows) - 1})]
-    losses = ", ".join(f"{float(row['held_out_loss']):.3g}" for row in some)
-    epochs = ", ".join(row["epoch"] for row in some)
-    what = "[loss](../theory/operators.md#training) on the held-out samples"
-    text = f"\nAfter {epochs} epochs the {what} is {losses} ([every epoch](curves/{name}.csv))."
+    text = f"\n[Losses](../theory/operators.md#training) of every epoch are in a [table](curves/{name}.csv)."
     initial = described(name)["recipe"]["initial"]
     if initial not in shipped():
-        text += f" The training continues an earlier one ([every epoch](curves/{initial}.csv))."
+        text += f" The training continues an [earlier one](curves/{initial}.csv)."
     return [text]
 
 
@@ -225,8 +221,8 @@ def strip_figures(figures: dict[str, Any], _: str) -> list[str]:
     lines = [
         f"The held-out samples are {figures['strips']} random airfoils. A",
         "[conformal map](../theory/o-grids.md) takes each domain to a strip. Errors are root mean square",
-        "distances from Winslow's solution in the strip, in radians. *base* is the initial grid, which the",
-        "network corrects. *+ n Picard* adds n fixed-point iterations for Winslow's equations.\n",
+        "distances from Winslow's solution in the strip, in radians. *+ n Picard*: n fixed-point iterations",
+        "for Winslow's equations follow.\n",
         "| method | error, median | error, 90th percentile | error, maximum |",
         "| --- | --- | --- | --- |",
     ]
@@ -243,10 +239,9 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     middle = "the middle of the body" if bodies else "the mean of the boundary nodes"
     lines = [
         f"The held-out samples are {figures['domains']} random {domains}. One network predicts both the",
-        f"variational grid and Winslow's grid, on {counts} nodes and without solver iterations. The *error*",
-        "is the RMS distance of the nodes from the solver's grid, divided by the RMS distance of its nodes",
-        f"from {middle}. The *initial grid* is the grid that the network",
-        "corrects. *Valid* grids have no folded cells.\n",
+        f"variational grid and Winslow's grid, on {counts} nodes and without solver iterations.",
+        "The *error* is the RMS distance of the nodes from those of the solver's grid, divided by the RMS",
+        f"distance of the solver's nodes from {middle}.\n",
         "| predicted grid | error, median | error, 90th percentile | initial grid: error, median | valid |",
         "| --- | --- | --- | --- | --- |",
     ]

@@ -5,8 +5,8 @@ HEAD = """# A comparison that is open to other programs
 <!-- made by python benchmarks/yardstick entries build/yardstick --page docs/benchmarks/yardstick.md -->
 
 Use this page to compare your program for structured grids with Gmsh and meshonet, on random shapes to which
-no program was adapted. The scripts in `benchmarks/yardstick` draw the shapes and judge the grids; for this
-they need NumPy and h5py only.
+no program was adapted. The scripts in `benchmarks/yardstick` draw the shapes and judge the grids; they need
+only NumPy and h5py.
 
 There are {count} shapes of each kind, drawn with seed {seed}. All boundary nodes are given.
 
@@ -22,12 +22,11 @@ There are {count} shapes of each kind, drawn with seed {seed}. All boundary node
 | `slab` | 65 x 33 | rectangle with rounded corners inside a circle |
 | `section` | 65 x 33 | NACA four-digit airfoil inside a circle |
 
-In the tables, the first six kinds are *four-sided*; the last three are *body*.
+In the tables, the first six kinds are *four-sided*, the last three *body*.
 
-- `infer --model NAME`: a [model shipped with meshonet](models.md).
-- *grids*: shapes for which the program makes a grid.
-- *folded*: number of grids with folded cells and, in brackets, number of folded cells. In a folded cell, the
-  Jacobian at a corner is not positive.
+- `infer --model NAME`: a [network shipped with meshonet](models.md).
+- *grids*: number of shapes for which the program makes a grid.
+- *folded*: number of grids with folded cells and, in brackets, number of folded cells.
 - *largest angle*: largest cell corner angle of a grid, mean / maximum over the grids.
 - *smallest angle*: smallest cell corner angle of all grids.
 - *skew*: largest deviation of the corner angles of a cell from 90 degrees, mean over all cells.
@@ -42,31 +41,31 @@ COLUMNS = """
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |"""
 
 NETWORKS = """
-- `meshonet infer` and `solve-pde` repair folded cells, except with `--no-repair`; `tfi` does not. Here all grids are written, also those with
-  folded cells (`--allow-invalid`).
+- `meshonet infer` and `solve-pde` repaired folded cells, except with `--no-repair`. Grids in which folded
+  cells remained were written too (`--allow-invalid`).
 - One four-sided domain, `wavy-15`, has a corner of 182 degrees, at which every grid has a folded cell.
   `infer` and `solve-pde --method variational` fold no other cells.
-- On the four-sided domains the skew of `meshonet infer` is 4.4 degrees, and the skew of Gmsh with smoothing
-  10.2 degrees. On the bodies `infer --model hole-o` has 3.8 degrees, and Gmsh with smoothing 8.5 degrees.
+- On the four-sided domains the skew is 4.4 degrees with `meshonet infer` and 10.2 degrees with Gmsh and
+  smoothing. On the bodies it is 3.8 degrees with `infer --model hole-o` and 8.5 degrees with Gmsh and
+  smoothing.
 
 ## Networks trained for a short time
 
 The names after `train --model` are the [networks of the MeshONet paper](../theory/paper-models.md) and the
-networks with which the paper compares them. Here the training is short:
+networks with which the paper compares them. All were trained for a short time:
 
-- A network other than `mgnet` and `meshnet` is trained with 15 epochs (300 steps), once on 600 four-sided
-  domains with 33 x 33 nodes, and once on 576 bodies with 65 x 33 nodes. These shapes come from
-  `sample-boundary --family four-sided` and `--family bodies`; the training grids are solutions of Winslow's
-  equations.
-- A network `mgnet` or `meshnet` is trained with 500 steps for one geometry, here for the first shape of each
-  kind. The training is part of its CPU time.
+- `mgnet` and `meshnet` are trained with 500 steps for one geometry, here for the first shape of each kind.
+  The training is part of their CPU time.
+- The other networks are trained with 300 steps (15 epochs), once on 600 four-sided domains with 33 x 33
+  nodes, and once on 576 bodies with 65 x 33 nodes. These shapes come from `sample-boundary --family
+  four-sided` and `--family bodies`; the training grids are solutions of Winslow's equations.
 - The given boundary nodes replace the predicted boundary nodes (`infer --answer pasted`). Folded cells are
   not repaired.
 """
 
 TAIL = """
-Almost all grids have folded cells: 300 steps are few, and the shapes differ in size and position from the
-shapes for training. The [page of the MeshONet paper](paper/index.md) gives errors after longer training.
+Almost all grids have folded cells: 300 steps are few, and the shapes are unlike those for training. The [page
+of the MeshONet paper](paper/index.md) gives errors after longer training.
 
 ## How to enter
 
@@ -75,10 +74,11 @@ shapes for training. The [page of the MeshONet paper](paper/index.md) gives erro
        python benchmarks/yardstick shapes build/yardstick --seed 1
 
    Each kind is a file `build/yardstick/KIND.h5` with the arrays `south`, `north` (n, ni, 2), `west`, `east`
-   (n, nj, 2) and `names`. With `--plot3d` each kind is also a folder `KIND` with a 2D ASCII Plot3D file for
-   each shape; the four blocks of the file are the sides. For a body, south is the body, clockwise, and north
-   is the circle. West and east are the two sides of one cut from the body to the circle; your program may
-   move the nodes of this cut.
+   (n, nj, 2) and `names`. For a body, south is the body, clockwise, and north is the circle. West and east are
+   the two sides of one cut from the body to the circle; your program may move the nodes of this cut.
+
+   With `--plot3d` each kind is also a folder `KIND` with a 2D ASCII Plot3D file for each shape. The four
+   blocks of the file are the sides.
 
 2. Run your program. It gets two paths: the boundaries to read, and the grids to write.
 
