@@ -11,7 +11,7 @@ MOST_REFINED = 200_000_000
 def check_reach(
     count: float, things: str, cause: str, remedy: str, *, most: float = MOST_CELLS, parameter: str = ""
 ) -> None:
-    """Raise InputError if a request needs more than `most` cells, nodes or the like.
+    """Raise InputError if a request needs more than `most` cells, nodes or other things.
 
     Parameters
     ----------

@@ -8,7 +8,7 @@ from meshonet.geometry.errors import meant
 
 @dataclass(frozen=True)
 class Summary:
-    """Statistics of one metric over all cells, with percentiles if requested."""
+    """Statistics of one metric over all cells, with percentiles if they were requested."""
 
     min: float
     mean: float
@@ -21,10 +21,10 @@ class Summary:
 
 @dataclass(frozen=True)
 class Quality:
-    """Quality of a grid: numbers of cells and of folded cells, and every metric by name.
+    """Quality of a grid: the numbers of cells and of folded cells, and every metric by its name.
 
-    `bezier_folded`: number of cells of volumes that may be folded inside, because a Bezier coefficient of the
-    Jacobian is not positive; None in the plane and on surfaces.
+    `bezier_folded` is the number of cells of volumes that may be folded inside, because a Bezier coefficient
+    of the Jacobian is not positive. It is None in the plane and on surfaces.
     """
 
     cells: int
@@ -50,7 +50,7 @@ class Quality:
 
 
 def named(at: tuple[int, ...]) -> str:
-    """Return the place (i, j), (block, i, j) or (block, i, j, k) of a node or cell as text.
+    """Return the indices of a node or cell as text: (i, j), (block, i, j) or (block, i, j, k).
 
     >>> named((3, 0, 7)), named((0, 1, 2, 3))
     ('block=3, i=0, j=7', 'block=0, i=1, j=2, k=3')

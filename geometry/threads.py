@@ -37,7 +37,7 @@ def cores() -> int:
 
 
 def thread_count() -> int:
-    """Return the number of threads to use: the number of cores, unless limited."""
+    """Return the number of threads to use: the number of cores, unless it is limited."""
     return min(_limit.get() or cores(), MOST)
 
 
@@ -50,8 +50,8 @@ def in_threads(work: Callable[[Item], Made], items: Sequence[Item]) -> list[Made
     """Return the results of `work` for each of `items`, computed concurrently if threads are free.
 
     This saves time if an item takes milliseconds, mostly in kernels or in loops of NumPy. `work` may itself
-    use its share of the threads; threads without an item help the others. Items are started in their order,
-    so that the longest should be first.
+    use its share of the threads. Threads without an item help the others. Items are started in order, so the
+    longest should come first.
     """
     inside = _helpers.get()
     if len(items) < 2 or not (inside or thread_count() > 1):
@@ -77,8 +77,8 @@ def in_threads(work: Callable[[Item], Made], items: Sequence[Item]) -> list[Made
 def over_blocks(work: Callable[[Item], Made], items: Sequence[Item], nodes: Sequence[int]) -> list[Made]:
     """Return the results of `work` for each of `items`; `nodes` are the node counts of the items.
 
-    Items with many nodes are processed one by one, since their kernels use all threads; other items
-    are processed together.
+    Items with many nodes are processed one by one, since their kernels use all threads. Other items are
+    processed concurrently.
     """
     many = [threads_for(count) > 1 for count in nodes]
     few = [item for item, alone in zip(items, many, strict=True) if not alone]
@@ -96,9 +96,7 @@ def run_in_threads(jobs: Sequence[Callable[[], Any]]) -> list[Any]:
 def limited_to(threads: int | None) -> Iterator[None]:
     """Limit the number of kernel threads within the ``with`` block; None changes nothing.
 
-    Python threads started inside do not inherit the limit.
-
-    Raises InputError: fewer than one thread.
+    Python threads that are started inside do not inherit the limit. Raises InputError: fewer than one.
     """
     if threads is not None and threads < 1:
         raise InputError(f"{threads} threads", "use 1 or more", parameter="threads")

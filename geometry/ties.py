@@ -46,7 +46,7 @@ def first_least(items: Iterable[Item], key: Callable[[Item], float]) -> Item:
 
 
 def ascending(values: Floats) -> Indices:
-    """Return the indices (n,) that sort `values` (n,); values equal to rounding keep their order.
+    """Return the indices (n,) that sort `values` (n,); values that are equal up to rounding keep their order.
 
     Examples
     --------
@@ -62,9 +62,9 @@ def ascending(values: Floats) -> Indices:
 
 
 def nearest_whole(values: Floats) -> Floats:
-    """Return the integers nearest to positive `values`.
+    """Return the integers nearest to positive `values`; of two that are equally near, the smaller.
 
-    If two integers are equally near, up to rounding, the smaller is returned.
+    Distances that differ only by rounding count as equal.
 
     Examples
     --------
@@ -75,9 +75,9 @@ def nearest_whole(values: Floats) -> Floats:
 
 
 def made_unlike(costs: Floats) -> Floats:
-    """Return `costs` (..., n) with perturbations, so that sums of different costs are hardly ever equal.
+    """Return `costs` (..., n), slightly changed so that sums of different costs are hardly ever equal.
 
-    A linear programme then has one solution. Perturbations differ by index, and are far below real
+    A linear programme then has a single solution. Changes differ by index, and are far below real
     differences.
     """
     digits = np.mod(1e3 * np.sqrt(np.arange(costs.size) + 0.618), 1.0)

@@ -125,15 +125,7 @@ class Grid(Connected):
         In the topology ``c``, the wake is the start of the south side that is repeated in reverse at its end.
         Without `patches`, the grid gets those of `default_patches`.
 
-        Returns
-        -------
-        Grid
-            The grid.
-
-        Raises
-        ------
-        InputError
-            See `Block`; an O grid that is not closed, a C grid without a wake.
+        Raises InputError: as `Block`; an O grid that is not closed, a C grid without a wake.
         """
         block = Block(nodes, finite)
         ni, nj = block.counts[:2]
@@ -274,13 +266,7 @@ class Grid(Connected):
         return replace(self, provenance=known)
 
     def quality(self) -> Quality:
-        """Return the summaries of all metrics (`meshonet.geometry.quality.measure.measure`).
-
-        Returns
-        -------
-        Quality
-            Statistics by the name of the metric.
-        """
+        """Return statistics of all metrics, by name (see `meshonet.geometry.quality.measure.measure`)."""
         quality: Quality = ABOVE["measure"](self)
         return quality
 
@@ -291,17 +277,7 @@ class Grid(Connected):
     def to_pyvista(self) -> Any:
         """Return the grid as a `pyvista.StructuredGrid`, several blocks as a `pyvista.MultiBlock` of these.
 
-        Planar grids get z = 0.
-
-        Returns
-        -------
-        pyvista.StructuredGrid or pyvista.MultiBlock
-            One structured grid for each block.
-
-        Raises
-        ------
-        InputError
-            PyVista is not installed.
+        Planar grids get z = 0. Raises InputError: PyVista is not installed.
         """
         try:
             from pyvista import MultiBlock, StructuredGrid

@@ -57,7 +57,7 @@ class Domain:
     def of_polygons(
         cls, polygons: Sequence[Floats], name: str = "", names: Sequence[str | Sequence[str]] = ()
     ) -> Self:
-        """Return the domain inside the first polygon (n, 2) and outside the others, of either orientation.
+        """Return the domain inside the first polygon (n, 2) and outside the others, in either direction.
 
         Parameters
         ----------
@@ -72,7 +72,7 @@ class Domain:
         Raises
         ------
         InputError
-            The number of names differs from the number of polygons, or from the number of parts of a polygon.
+            The number of names is not that of the polygons, or not that of a polygon's parts.
 
         Examples
         --------

@@ -26,11 +26,11 @@ def farthest(wall: Complexes) -> tuple[int, int]:
 def handedness(wall: Complexes, far: Complexes) -> tuple[int, Axis]:
     """Return a sign that tells a body from its mirror image, and the axis of the mirror.
 
-    The body is given by two curves, `wall` (n,) and `far` (n,). The sign, 1 or -1, is opposite for the mirror
-    images of both curves, in reversed order; it is 0 if both are symmetric. The axis runs from the first node
-    of `wall` to the middle between the nodes that are farthest from the first. Node k and node n - k are
-    partners. The sign is that of the largest distance between a node and the mirror image of its partner on
-    `wall`; if `wall` is symmetric, on `far`. The axis is given by a point and the square of its direction.
+    The body is given by two curves, `wall` (n,) and `far` (n,). The mirror images of both, in reversed order,
+    have the opposite sign, 1 or -1. The sign is 0 if both curves are symmetric. The axis (a point and the
+    square of its direction) runs from the first node of `wall` to the middle between the nodes farthest from
+    it. Node k and node n - k are partners. The sign is that of the largest distance between a node and the
+    mirror image of its partner, on `wall` or, if `wall` is symmetric, on `far`.
     """
     a, b = farthest(wall)
     along = 0.5 * (wall[a] + wall[b]) - wall[0]

@@ -22,7 +22,7 @@ _CHUNK = 256  # segments queried at a time, so that the crossings of a tangle do
 
 @dataclass(frozen=True)
 class Crossing:
-    """Two segments that meet: their indices (segment k starts at point k) and the point they share."""
+    """Two segments that meet: their indices (segment k starts at point k), and a point on both."""
 
     first: int
     second: int
@@ -40,7 +40,7 @@ def find_crossing(points: Floats) -> Crossing | None:
 
 
 def check_outline(points: Floats, places: Sequence[str] = ()) -> None:
-    """Raise InputError if a closed polygon (n, 2) crosses itself; `places` locate its points in a source."""
+    """Raise InputError if a closed polygon (n, 2) crosses itself; `places` locates its points in a file."""
     crossing = find_crossing(points)
     if crossing is not None:
         first, second = (
@@ -54,7 +54,7 @@ def check_outline(points: Floats, places: Sequence[str] = ()) -> None:
 
 
 def find_crossings(points: Floats, *, closed: bool = True, limit: int = 64) -> list[Crossing]:
-    """Return up to `limit` crossings or contacts of segments of a polygon (n, 2) that are not neighbours.
+    """Return up to `limit` crossings or contacts of segments of a polygon (n, 2), except between neighbours.
 
     A segment that runs back along its neighbour is also reported. A closed polygon does not repeat its first
     point. Only segments whose projections on an oblique line overlap are compared; with too many such
@@ -70,9 +70,9 @@ def find_crossings(points: Floats, *, closed: bool = True, limit: int = 64) -> l
 
 
 def sweep_spans(p: Floats, end: Floats) -> tuple[Floats, Floats]:
-    """Return the least and the largest coordinate (m,) of segments from `p` to `end` (m, 2) along `_SWEEP`.
+    """Return the least and the largest coordinate (m,) of segments, from `p` to `end` (m, 2), along a line.
 
-    `_SWEEP` is an oblique direction. The largest coordinates are rounded upwards.
+    The line has the oblique direction `_SWEEP`. The largest coordinates are rounded upwards.
     """
     along, along_end = product(p[: len(end)], _SWEEP), product(end, _SWEEP)
     low, top = np.minimum(along, along_end), np.maximum(along, along_end)
@@ -98,7 +98,7 @@ def _pairs_by_tree(p: Floats, end: Floats, closed: bool, limit: int) -> list[tup
 
 
 def crossing_of(p: Floats, end: Floats, i: int, j: int) -> Crossing:
-    """Return the crossing of segments i and j, which may be collinear: a point that lies on both.
+    """Return the crossing of segments `i` and `j`, a point that lies on both, even if they are collinear.
 
     Segments run from `p` (m, 2) to `end` (m, 2).
     """

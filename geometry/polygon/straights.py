@@ -21,8 +21,9 @@ def find_kinks(points: Floats, *, few: int = FEW) -> Indices:
     """Return the ascending indices of kinks of an open polygon `points` (n, 2); corners may be among them.
 
     A turn of more than 2 degrees is a kink if it is 20 times as large as both neighbouring turns. In a
-    polygon of at most `few` points, all such turns are kinks if two successive turns in opposite directions
-    are at least half of the largest. A smooth curve through these points would be a wave.
+    polygon of at most `few` points, all turns of more than 2 degrees are kinks if two successive turns, in
+    opposite directions, are at least half of the largest turn: a smooth curve through these points would be a
+    wave.
     """
     turn = turning(points)
     size = np.abs(turn)
@@ -35,11 +36,11 @@ def find_kinks(points: Floats, *, few: int = FEW) -> Indices:
 
 
 def straight_intervals(points: Floats, corners: Indices) -> Bools:
-    """Return the mask (n,) of the intervals of a closed polygon `points` (n, 2) that are straight lines.
+    """Return which intervals (n,) of a closed polygon `points` (n, 2) are straight lines.
 
-    A straight interval is at least `LONG` times as long as a neighbouring interval; neighbours beyond
-    `corners` (indices of points) do not count. At both ends of a straight interval, the polygon turns by at
-    most `EXPLAINED` times the angle between tangent and chord of the circle through the next three points.
+    A straight interval is at least `LONG` times as long as a neighbouring interval that is not beyond one of
+    the `corners` (indices of points). At both ends of a straight interval, the polygon turns by at most
+    `EXPLAINED` times the angle between tangent and chord of the circle through the next three points.
     """
     turn, joined = turning(points, closed=True), np.ones(len(points), dtype=bool)
     turn[corners], joined[corners] = 0.0, False

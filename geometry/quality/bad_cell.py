@@ -10,9 +10,9 @@ from meshonet.geometry.blocks.grid import Grid
 
 @dataclass(frozen=True)
 class BadCell:
-    """A folded cell: block, indices i, j, k, and centre x, y, z.
+    """A folded cell: its block, its indices i, j, k, and its centre x, y, z.
 
-    `block` is None in a grid of one block, `k` except in volumes, and `z` in the plane.
+    `block` is None in a grid of one block, `k` is None except in volumes, and `z` is None in the plane.
     """
 
     i: int
@@ -25,13 +25,13 @@ class BadCell:
 
     @property
     def indices(self) -> str:
-        """``block=2, i=3, j=4, k=5``, without those that are None."""
+        """Text such as ``block=2, i=3, j=4, k=5``, without the values that are None."""
         places = {"block": self.block, "i": self.i, "j": self.j, "k": self.k}
         return ", ".join(f"{name}={value}" for name, value in places.items() if value is not None)
 
     @property
     def centre(self) -> str:
-        """``x=0.1, y=0.2, z=0.3``, without those that are None."""
+        """Text such as ``x=0.1, y=0.2, z=0.3``, without the values that are None."""
         places = {"x": self.x, "y": self.y, "z": self.z}
         return ", ".join(f"{name}={value:.6g}" for name, value in places.items() if value is not None)
 
@@ -40,9 +40,9 @@ class BadCell:
 
 
 def centre_of(grid: Grid, at: tuple[int, ...]) -> Floats:
-    """Return the centre (2,) or (3,) of the cell `at`: (i, j), (block, i, j) or (block, i, j, k).
+    """Return the centre (2,) or (3,) of the cell `at`, which is (i, j), (block, i, j) or (block, i, j, k).
 
-    An index of the last node along a direction stands for the last cell.
+    The index of the last node along a direction stands for the last cell.
     """
     block, *place = at if len(at) > 2 else (0, *at)
     nodes = grid.blocks[block].nodes

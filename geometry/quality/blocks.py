@@ -19,8 +19,8 @@ from meshonet.geometry.summary import Quality
 class BlockCounts:
     """Blocks and irregular vertices of a grid.
 
-    `sizes` are the node counts of each block. `irregular` lists inner nodes (block, i, j) with more or fewer
-    than four cells, each with its number of cells; it is None for volumes.
+    `sizes` are the node counts of each block. `irregular` lists the inner nodes (block, i, j) at which more
+    or fewer than four cells meet, each with its number of cells. It is None for volumes.
     """
 
     sizes: tuple[tuple[int, ...], ...]
@@ -31,8 +31,9 @@ class BlockCounts:
 class BlockFigures(BlockCounts):
     """Counts, angles and grid lines of a multi-block grid; `nodes` is the number of distinct nodes.
 
-    `deviation` is that of corner angles from 90 degrees, in degrees; at a corner of a volume, the largest of
-    three. The mean is over corners, the percentile over cells, each with its largest deviation.
+    `deviation` is that of corner angles from 90 degrees, in degrees; at a corner of a volume, it is the
+    largest of three. Its mean is over all corners. Its percentile is over all cells, each with its largest
+    deviation.
     """
 
     nodes: int
@@ -64,8 +65,8 @@ LINES = ("growth_inside", "growth_across", "bend_inside", "bend_across")  # fiel
 def block_figures(grid: Grid, quality: Quality | None = None, run: Lines | None = None) -> BlockFigures:
     """Return the figures of a multi-block grid.
 
-    `quality` is used for volumes only; None: it is measured. Percentiles of a volume are computed unless
-    `quality` is given without them. `run` holds growth and bend, if they are known already.
+    For volumes, `quality` is the quality of the grid if it has been measured. Percentiles of a volume are
+    computed unless `quality` is given without them. `run` has growth and bend, if they are known already.
     """
     if grid.form == "volume":
         from meshonet.geometry.quality.volumes import measure_volumes
@@ -97,7 +98,7 @@ def block_counts(grid: Grid, nodes: Vertices | None = None) -> BlockCounts:
 
 
 def extreme_dict(extreme: Extreme | None) -> dict[str, Any] | None:
-    """Return an extreme as a dict that JSON can hold."""
+    """Return an extreme (maximum and mean of a quantity) as a dict that JSON can hold."""
     if extreme is None:
         return None
     facts = {"max": extreme.max, "mean": extreme.mean, "at": list(extreme.at)}
@@ -105,7 +106,10 @@ def extreme_dict(extreme: Extreme | None) -> dict[str, Any] | None:
 
 
 def deviation(grid: Grid) -> Extreme:
-    """Return how far corner angles of planar blocks or patches deviate from 90 degrees, by up to 270."""
+    """Return how far the corner angles of planar blocks or patches deviate from 90 degrees.
+
+    Angles are from 0 to 360 degrees, so that deviations reach 270.
+    """
     every = [corner_deviations(block.nodes) for block in grid.blocks]
     worst = [corners.max(axis=0) for corners in every]
     block = int(np.argmax([cells.max() for cells in worst]))
@@ -120,7 +124,7 @@ def deviation(grid: Grid) -> Extreme:
 
 
 def corner_deviations(nodes: Floats) -> Floats:
-    """Return the deviations (4, ni-1, nj-1) in degrees of cell corners of `nodes` (ni, nj, 2 or 3)."""
+    """Return by how many degrees (4, ni-1, nj-1) cell corners of `nodes` (ni, nj, 2 or 3) differ from 90."""
     ring = ring_of(nodes)
     ahead = np.roll(ring, -1, axis=0) - ring
     angle = angle_between(ahead, -np.roll(ahead, 1, axis=0))

@@ -20,8 +20,9 @@ NONE = slice(0)  # slice of no metric
 class CellRun(NamedTuple):
     """Result of one pass over the cells of a block.
 
-    `table` (metrics, 3) has minimum, mean and maximum of each metric, and `where` (metrics, 2, 2) the cells
-    i, j of minimum and maximum. `values` (n, ni-1, nj-1) has the values in all cells for n chosen metrics.
+    `table` (metrics, 3) has the minimum, mean and maximum of each metric. `where` (metrics, 2, 2) has the
+    cell i, j of the minimum and that of the maximum. `values` (n, ni-1, nj-1) has n chosen metrics of all
+    cells.
     """
 
     table: Floats
@@ -32,8 +33,8 @@ class CellRun(NamedTuple):
 def run_over(nodes: Floats, kept: slice = NONE, *, periodic: bool = False, wake: int = 0) -> CellRun:
     """Return statistics of all metrics of `nodes` (ni, nj, 2), and the values of the metrics `kept`.
 
-    In a `periodic` block nodes i = ni-1 and i = 0 coincide. Along the south side the first `wake` cells touch
-    the last `wake` cells.
+    In a `periodic` block, nodes with i = 0 and i = ni-1 coincide. On the south side, the first `wake` cells
+    touch the last `wake` cells.
     """
     metrics, (x, y) = len(QUAD_METRICS), np.moveaxis(as_planar(nodes), -1, 0)
     table, where = np.empty((metrics, 3)), np.empty((metrics, 2, 2), dtype=np.int64)

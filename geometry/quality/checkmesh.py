@@ -23,9 +23,9 @@ from meshonet.geometry.quality.metrics import FACE_NAMES
 
 @dataclass(frozen=True)
 class FaceMeasures:
-    """Statistics of each measure of faces, with the cell of the largest value; None if there is no face.
+    """Statistics of each measure of faces, and the cell with the largest value; None without faces.
 
-    Cells are (i, j), in a multi-block grid (block, i, j), in volumes (block, i, j, k).
+    A cell is (i, j), in a multi-block grid (block, i, j), in volumes (block, i, j, k).
     """
 
     non_orthogonality: Extreme | None
@@ -34,7 +34,7 @@ class FaceMeasures:
 
 
 def faces(grid: Grid) -> FaceMeasures:
-    """Return the measures of the faces of `grid`. Raises InputError: a surface."""
+    """Return the measures of the faces of `grid`. Raises InputError: a surface, which has no such faces."""
     if grid.form == "volume":
         cells = [cells_of(block.nodes) for block in grid.blocks]
         ratios = (((number, 0, 0, 0), own.aspect) for number, own in enumerate(cells))
@@ -51,9 +51,9 @@ def faces(grid: Grid) -> FaceMeasures:
 
 
 def worst_faces(grid: Grid, name: str) -> list[Floats]:
-    """Return, for each block (ni-1, nj-1[, nk-1]), the largest measure `name` on each cell's faces.
+    """Return, for each block, the largest value (ni-1, nj-1[, nk-1]) of measure `name` on faces of each cell.
 
-    A face between two cells counts for the one with the lower index only. Raises InputError: a surface.
+    A face between two cells counts only for the one with the lower index. Raises InputError: a surface.
     """
     if name == "box_ratio":
         volume = grid.form == "volume"
@@ -71,7 +71,7 @@ def worst_faces(grid: Grid, name: str) -> list[Floats]:
 
 
 def cells_beyond(grid: Grid, angle: float, skew: float) -> list[tuple[int, int, int]]:
-    """Return the cells (block, i, j) that have non-orthogonality above `angle`, or skewness above `skew`."""
+    """Return the cells (block, i, j) with a non-orthogonality above `angle` or a skewness above `skew`."""
     cells: list[tuple[int, int, int]] = []
     for (block, i, j), angles, skews in _of_blocks(grid):
         where = skews > skew if angles is None else (angles > angle) | (skews > skew)
@@ -141,7 +141,7 @@ def _outer(grid: Grid) -> Iterator[Values]:
 
 
 def centroids(nodes: Floats) -> Floats:
-    """Return the centroids (ni-1, nj-1, 2) of the cells of `nodes` (ni, nj, 2), as two triangles each."""
+    """Return the centroids (ni-1, nj-1, 2) of the cells of `nodes` (ni, nj, 2), each as two triangles."""
     a = nodes[:-1, :-1]
     b, c, d = nodes[1:, :-1] - a, nodes[1:, 1:] - a, nodes[:-1, 1:] - a
     first, second = cross2(b, c), cross2(c, d)

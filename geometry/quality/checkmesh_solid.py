@@ -34,7 +34,7 @@ class Cells:
 
 
 def solid_faces(grid: Grid, cells: Sequence[Cells]) -> Iterator[Values]:
-    """Yield the measures of the faces of volumes, layer by layer; `cells` has one entry per block."""
+    """Yield the measures of the faces of volumes, layer by layer; `cells` has one item for each block."""
     for number, (block, own) in enumerate(zip(grid.blocks, cells, strict=True)):
         nodes = np.moveaxis(block.nodes, -1, 0)
         for axis in range(3):
@@ -74,7 +74,7 @@ def _across(grid: Grid, cells: Sequence[Cells]) -> Iterator[Values]:
 
 
 def cells_of(nodes: Floats) -> Cells:
-    """Return centres and aspect ratios of the cells of nodes (ni, nj, nk, 3)."""
+    """Return centres and aspect ratios of the cells of a block with `nodes` (ni, nj, nk, 3)."""
     planes = np.moveaxis(nodes, -1, 0)
     shape = [count - 1 for count in nodes.shape[:3]]
     centres, aspect = np.empty((3, *shape)), np.empty(shape)
@@ -180,7 +180,7 @@ def _cross(u: Floats, v: Floats) -> Floats:
 
 
 def cell_at(grid: Grid, block: int, side: Side, first: tuple[int, ...]) -> tuple[int, ...]:
-    """Return the cell (block, i, j[, k]) at a side; `first` are the one or two indices along the side."""
+    """Return the cell (block, i, j[, k]) next to a side; `first` has the indices along this side."""
     axis, end = PLACES[side]
     return _place(block, axis, 0 if end == 0 else grid.blocks[block].counts[axis] - 2, first)
 

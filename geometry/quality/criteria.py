@@ -13,16 +13,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Criteria:
-    """Gates and profiles by which grids pass or fail, at least one gate or profile.
+    """Gates and profiles (named sets of limits) by which grids pass or fail; at least one of them.
 
-    Parameters
-    ----------
-    gates : tuple of Gate, optional
-        Conditions under which a grid fails.
-    profiles : tuple of str, optional
-        Names in `meshonet.geometry.quality.profiles.PROFILES`.
-    leave_out : bool, optional
-        Whether grids that fail are not written.
+    `gates` are conditions under which a grid fails. `profiles` are names in
+    `meshonet.geometry.quality.profiles.PROFILES`. With `leave_out`, grids that fail are not written.
     """
 
     gates: tuple[Gate, ...] = ()
@@ -35,7 +29,7 @@ class Criteria:
         return any(gate.statistic in ("p01", "p99") for gate in self.gates)
 
     def judge(self, grid: Grid, quality: Quality) -> Judgement:
-        """Return the judgement of `grid`. Raises InputError: a gate on a figure that it does not have."""
+        """Return the judgement of `grid`. Raises InputError: a gate on a figure that the grid lacks."""
         from meshonet.geometry.quality.figures import Figures
         from meshonet.geometry.quality.profiles import profile_report
         from meshonet.geometry.quality.report import QualityReport

@@ -38,7 +38,7 @@ FIGURES: Mapping[str, str] = MappingProxyType({
 
 @dataclass(frozen=True)
 class Figure:
-    """A value; if known, its node or cell (i, j) or (block, i, j[, k]) and direction of the grid line."""
+    """A value and, if known, its node or cell `at` ([block,] i, j[, k]) and its direction of grid lines."""
 
     value: float
     at: tuple[int, ...] | None = None
@@ -67,7 +67,7 @@ class Figures:
 
     @cached_property
     def faces(self) -> FaceMeasures:
-        """The measures of checkMesh."""
+        """The measures of faces that checkMesh uses."""
         return faces(self.grid)
 
     @cached_property
@@ -77,12 +77,12 @@ class Figures:
 
     @cached_property
     def blocks(self) -> BlockFigures:
-        """Blocks, irregular vertices, corner angles, and grid lines through the blocks."""
+        """Blocks, irregular vertices, corner angles and growth and bend of grid lines."""
         return block_figures(self.grid, self.quality)
 
     @cached_property
     def wall_rows(self) -> tuple[WallRow, ...]:
-        """First cells and angles at the walls."""
+        """Heights and angles of the first cells at the walls."""
         by_wall = self.blocks.lines.by_wall if self.walls and self.grid.topology == "blocks" else {}
         return wall_rows(self.grid, self.walls, by_wall)
 

@@ -25,7 +25,7 @@ _GATE = re.compile(r"\s*(\w+)(?:\.(\w+))?\s*(>=|<=|>|<)\s*([-+.\w]+)\s*", re.ASC
 
 @dataclass(frozen=True)
 class Gate:
-    """A condition that a grid must not meet, written as ``METRIC[.STATISTIC] OPERATOR VALUE``."""
+    """A condition by which a grid fails if it is met, written as ``METRIC[.STATISTIC] OPERATOR VALUE``."""
 
     text: str
     metric: str  # name of a metric, a count (`COUNTS`), one of `FIGURES`, or another that the caller allows
@@ -34,7 +34,7 @@ class Gate:
     limit: float  # limit, in the unit of the metric
 
     def figure(self, figures: "Figures", more: Mapping[str, Figure] = NO_MORE) -> Figure:
-        """Return the figure that the gate limits, from `more` or `figures`. Raises InputError: in neither."""
+        """Return the figure that the gate limits, from `more` or else `figures`. Raises InputError: none."""
         figure = more.get(self.metric) or figures(self.metric, self.statistic)
         if figure is None:
             known = [name for name in COUNTS if figures(name)]
@@ -43,20 +43,20 @@ class Gate:
         return figure
 
     def broken(self, figures: "Figures", more: Mapping[str, Figure] = NO_MORE) -> str | None:
-        """Return a message if the grid fails by this gate, else None. Raises InputError: as `figure`."""
+        """Return a message if the grid fails by this gate, otherwise None. Raises InputError: as `figure`."""
         figure = self.figure(figures, more)
         if not beyond(figure.value, self.compare, self.limit):
             return None
         return f"{self._what} is {figure.value:.6g}{figure.where}, which fails {{fail_on}} '{self.text}'"
 
     def in_short(self, figure: Figure) -> str:
-        """Return a figure that exceeds the limit, and the limit, as text: ``max_angle.max 178.2 > 170``."""
+        """Return a text with a figure beyond the limit and with the limit: ``max_angle.max 178.2 > 170``."""
         return in_short(self._what, figure, self.compare, self.limit)
 
     def replaces(self, figure: str, compare: str) -> bool:
-        """Return whether the gate replaces a profile's limit, with the comparison `compare`, on `figure`.
+        """Return whether the gate replaces a profile's limit on `figure` with the comparison `compare`.
 
-        It does if both limit the same figure and statistic from the same side, above or below.
+        It does if it limits the same figure and statistic in the same direction (upwards or downwards).
         """
         return (self.metric, self.compare[0], self.statistic) == (figure, compare[0], end_of(compare))
 
@@ -66,19 +66,19 @@ class Gate:
 
 
 def beyond(value: float, compare: str, limit: float) -> bool:
-    """Return whether a value exceeds a limit in the direction of `compare`; NaN always does."""
+    """Return whether `value` is beyond `limit` by the comparison `compare`, such as ``>``; NaN always is."""
     return bool(COMPARE[compare](value, limit)) or value != value
 
 
 def end_of(compare: str) -> str:
-    """Return the statistic of a metric to which a limit applies: ``max`` for ``>``, ``min`` for ``<``."""
+    """Return the statistic to which a limit without one applies: ``max`` for ``>``, ``min`` for ``<``."""
     return "max" if compare in (">", ">=") else "min"
 
 
 def in_short(name: str, figure: Figure, compare: str, limit: float) -> str:
-    """Return a figure and its limit as text; growth and bend with direction and place.
+    """Return a figure and its limit as text; growth and bend also with direction and place.
 
-    The figure has four digits, or as many as it takes to differ from the limit.
+    The figure has four digits, or more if it would equal the limit otherwise.
 
     >>> in_short("growth", Figure(1.417, (12, 0), "xi"), ">", 1.3)
     'growth 1.417 > 1.3 along xi at i=12, j=0'
@@ -96,9 +96,9 @@ class Judgement:
     Parameters
     ----------
     problems : tuple of str
-        A line for each failed gate or check of a profile.
+        A line for each gate or check of a profile by which the grid fails.
     beyond : tuple of str
-        A short text for each problem and each warning of a profile: ``max_angle 178.2 > 170``.
+        A short text for each problem and each warning, such as ``max_angle 178.2 > 170``.
     replaced : tuple of str
         Limits of gates that override those of a profile, such as ``box_ratio > 4000``.
     profile : ProfileReport, optional
@@ -112,15 +112,15 @@ class Judgement:
 
     @property
     def verdict(self) -> Literal["pass", "warn", "fail"]:
-        """The worst outcome of any gate or check."""
+        """The worst outcome of all gates and checks."""
         return "fail" if self.problems else "warn" if self.beyond else "pass"
 
 
 def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
-    """Return the gate in `text`; `more` are figures permitted besides `FIGURES`.
+    """Return the gate that `text` describes; figures named in `more` are permitted besides `FIGURES`.
 
-    Without a statistic, ``>`` applies to the largest value in any cell, ``<`` to the smallest.
-    Raises InputError: not a gate; an unknown metric or statistic.
+    Without a statistic, ``>`` limits the largest value of all cells, ``<`` the smallest. Raises InputError: a
+    text that is not a gate; an unknown metric or statistic.
 
     >>> parse_gate("max_angle > 170").statistic, parse_gate("scaled_jacobian.p01<0.2").statistic
     ('max', 'p01')
@@ -151,7 +151,7 @@ def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
 
 
 def parse_gates(texts: Iterable[str] | None, more: Sequence[str] = ()) -> tuple[Gate, ...]:
-    """Return the gates of all `texts`; `more` are figures that are permitted besides `FIGURES`."""
+    """Return the gates that `texts` describe; figures named in `more` are permitted besides `FIGURES`."""
     return tuple(parse_gate(text, more) for text in texts or ())
 
 
@@ -159,7 +159,7 @@ VERDICTS = ("pass", "warn", "fail", "error")  # from best to worst; ``error``: t
 
 
 def verdict_word(verdict: str) -> str:
-    """Return a verdict as users see it.
+    """Return the word for a verdict that users see.
 
     >>> verdict_word("warn"), verdict_word("fail")
     ('warn', 'FAIL')

@@ -21,10 +21,10 @@ LARGE = 1e30  # growth that is reported at an edge of zero length
 
 @dataclass(frozen=True)
 class Extreme:
-    """Greatest value of a quantity, its mean, and its 99th percentile if computed.
+    """Greatest value of a quantity, its mean and, if computed, its 99th percentile.
 
-    `at` is the node or cell of the greatest value: (i, j), in a multi-block grid (block, i, j[, k]). `along`
-    is the direction of the grid line there, one of `DIRECTIONS`.
+    `at` is the node or cell of the greatest value: (i, j), or in a multi-block grid (block, i, j[, k]).
+    `along` is the direction of the grid line there, one of `DIRECTIONS`.
     """
 
     max: float
@@ -36,7 +36,7 @@ class Extreme:
 
 @dataclass(frozen=True)
 class Growth:
-    """Growth along each direction, None if lines have a single edge."""
+    """Growth ratios along each direction; None if grid lines of this direction have a single edge."""
 
     xi: Extreme | None
     eta: Extreme | None
@@ -48,7 +48,7 @@ class Growth:
 
 
 class Tally:
-    """Maximum and mean of values that are added part by part; with `kept`, the 99th percentile too."""
+    """Maximum and mean of values that are added in parts; with `kept`, also the 99th percentile."""
 
     def __init__(self, *, kept: bool = False) -> None:
         self._max, self._total, self._count = -np.inf, 0.0, 0
@@ -57,7 +57,7 @@ class Tally:
         self._values: list[Floats | Singles] | None = [] if kept else None
 
     def add(self, place: tuple[int, ...], values: Floats, along: str | None = None) -> None:
-        """Add values (m, n[, l]) of nodes or cells, the first at `place`, such as (i, j)."""
+        """Add values (m, n[, l]) of nodes or cells; `place` is the first node or cell, such as (i, j)."""
         if values.size == 0:
             return
         here = np.unravel_index(int(values.argmax()), values.shape)
@@ -74,7 +74,7 @@ class Tally:
         along: str | None,
         values: Sequence[Floats | Singles],
     ) -> None:
-        """Add `count` values with the sum `total`; the greatest is `high`, at the node or cell `at`."""
+        """Add `count` values with the sum `total` and the maximum `high`, which is at node or cell `at`."""
         if high > self._max:
             self._max, self._at, self._along = high, at, along
         self._total += total
@@ -98,7 +98,7 @@ class Tally:
 
 
 def growth(grid: Grid) -> Growth:
-    """Return the growth ratios of `grid` along xi and eta."""
+    """Return the growth ratios along xi and eta, in a grid of one planar block."""
     xi, eta = Tally(), Tally()
     for i, block in strips(beyond_seam(grid), 2):
         xi.add((i + 1, 0), ratios(block), "xi")
@@ -109,37 +109,37 @@ def growth(grid: Grid) -> Growth:
 
 
 def growth_off_walls(growth: Growth, walls: Sequence[Patch]) -> Extreme | None:
-    """Return the growth along the lines that start at `walls`, in a grid of one block."""
+    """Return the growth along the grid lines that start at `walls`, for a grid of one block."""
     sides = {patch.side for patch in walls}
     families = (growth.eta, {"south", "north"}), (growth.xi, {"west", "east"})
     return most_of(extreme for extreme, ends in families if extreme and sides & ends)
 
 
 def most_of(extremes: Iterable[Extreme | None]) -> Extreme | None:
-    """Return the extreme with the greatest value, None if there is none."""
+    """Return the extreme with the greatest value; None if there is none."""
     return max((each for each in extremes if each), key=lambda extreme: extreme.max, default=None)
 
 
 def beyond_seam(grid: Grid) -> Floats:
-    """Return the nodes (ni, nj, 2) of a grid; in an O grid (ni + 1, nj, 2), column i = 1 again at the end."""
+    """Return the nodes (ni, nj, 2) of a grid; those (ni + 1, nj, 2) of an O grid end with i = 1 again."""
     return np.concatenate([grid.nodes, grid.nodes[1:2]]) if grid.periodic else grid.nodes
 
 
 def across_wake(grid: Grid) -> Floats:
-    """Return nodes (n, 3, 2) above, on and below the wake of a C grid, none for other grids."""
+    """Return the nodes (n, 3, 2) below, on and above the wake of a C grid; none for other grids."""
     nodes = grid.wake + 1 if grid.wake else 0
     below = grid.nodes[::-1][:nodes, 1]
     return np.stack([below, grid.nodes[:nodes, 0], grid.nodes[:nodes, 1]], axis=1)
 
 
 def strips(nodes: Floats, more: int) -> Iterator[tuple[int, Floats]]:
-    """Yield i and the part of `nodes` (ni, nj, 2) from i on; neighbouring parts share `more` indices i."""
+    """Yield parts of `nodes` (ni, nj, 2), each with its first i; neighbours share `more` values of i."""
     for i in range(0, max(len(nodes) - more, 0), ROWS):
         yield i, nodes[i : i + ROWS + more]
 
 
 def ratios(nodes: Floats) -> Floats:
-    """Return the growth ratios (m-2, ...) along the first axis of `nodes` (m, ..., d)."""
+    """Return the ratios (m-2, ...) of successive edges along the first axis of `nodes` (m, ..., d), >= 1."""
     length = norms(np.diff(nodes, axis=0))
     before, after = length[:-1], length[1:]
     small = np.minimum(before, after)

@@ -25,11 +25,11 @@ from meshonet.kernels import _native
 
 @dataclass(frozen=True)
 class Lines:
-    """Largest growth and bend (turning angle in degrees) of grid lines, with their nodes; None without nodes.
+    """Largest growth and bend (turning angle in degrees) of grid lines, and their nodes; None without nodes.
 
-    `growth` is along each direction of the blocks. Fields ``_inside`` are of nodes inside blocks, ``_across``
-    of nodes on sides between blocks. `leaving` is growth along lines from walls through all blocks, `by_wall`
-    the same for each wall.
+    `growth` is along each direction of the blocks. Fields that end in ``_inside`` are of nodes inside blocks,
+    those in ``_across`` of nodes on sides between blocks. `leaving` is the growth along all lines that leave
+    walls, through all blocks. `by_wall` is the same for each wall.
     """
 
     growth: Growth
@@ -43,7 +43,7 @@ class Lines:
 
 @dataclass(frozen=True)
 class BlockLines:
-    """Growth and bend of the lines along a direction of a block, inside it or across one of its sides."""
+    """Growth and bend of grid lines along a direction of a block, inside it or across one of its sides."""
 
     block: int
     axis: int
@@ -53,7 +53,7 @@ class BlockLines:
 
 
 def lines(grid: Grid, nodes: Vertices, *, all_measures: bool = True) -> Lines:
-    """Return growth and bend of the lines of planar blocks or surface patches.
+    """Return growth and bend of the grid lines of planar blocks or surface patches.
 
     `nodes` are the vertices of the grid. Without `all_measures`, bend and percentiles are left out.
     """
@@ -63,9 +63,10 @@ def lines(grid: Grid, nodes: Vertices, *, all_measures: bool = True) -> Lines:
 
 
 def lines_of(grid: Grid, parts: list[BlockLines], *, along: bool = True, places: bool = True) -> Lines:
-    """Return growth and bend of all lines in `parts`.
+    """Return growth and bend of all grid lines in `parts`.
 
-    `along` requests percentiles for each direction and wall, `places` for nodes inside blocks and on sides.
+    With `along`, percentiles are computed for each direction and wall. With `places`, they are computed for
+    nodes inside blocks and on sides.
     """
     family = {(m.block, m.axis): k for k, members in enumerate(families(grid)) for m in members}
     walls = [(patch.name, family[patch.block, patch.place[0]]) for patch in grid.walls()]
@@ -100,10 +101,11 @@ def _of(tallies: Iterable[Tally], *, kept: bool) -> Extreme | None:
 def part_of_values(
     place: tuple[int, ...], axis: int, inside: bool, values: Iterable[Floats], *, kept: bool = True
 ) -> BlockLines:
-    """Return growth and bend of lines along `axis` through an array of nodes.
+    """Return growth and bend of the grid lines along `axis` through an array of nodes.
 
-    `values` are growth and, if computed, bend, each (m, n[, l]). `place` is the first, (block, i, j[, k]).
-    `inside`: nodes are inside the block, not on a side. `kept`: values are stored for percentiles.
+    `values` are growth and, if computed, bend, each (m, n[, l]). `place` (block, i, j[, k]) is the first
+    node. `inside` says that the nodes are inside the block, not on a side. With `kept`, values are stored for
+    percentiles.
     """
     tallies = Tally(kept=kept), Tally(kept=kept)
     for tally, each in zip(tallies, values, strict=False):
@@ -140,13 +142,13 @@ def _across(
 
 
 def bends(nodes: Floats) -> Floats:
-    """Return the angles (m-2, ...) in degrees by which lines along the first axis (m, ..., d) turn."""
+    """Return by how many degrees (m-2, ...) lines turn along the first axis of `nodes` (m, ..., d)."""
     step = np.diff(nodes, axis=0)
     return np.degrees(np.abs(angle_between(step[:-1], step[1:])))
 
 
 def solid_lines(grid: Grid, *, percentiles: bool = True) -> Lines:
-    """Return growth and bend of the lines of volumes; percentiles are computed in single precision."""
+    """Return growth and bend of the grid lines of volumes; percentiles are computed in single precision."""
     numbers, nodes = range(len(grid.blocks)), [block.nodes[..., 0].size for block in grid.blocks]
     inside = over_blocks(lambda number: _solid_inside(grid, number, percentiles), numbers, nodes)
     nodes = [2 * math.prod(stop - start + 1 for start, stop in each.range) for each in grid.connections]
@@ -189,7 +191,7 @@ def _solid_across(grid: Grid, each: Connection, kept: bool) -> BlockLines:
 
 
 def growth_of_cells(grid: Grid) -> list[Floats]:
-    """Return, for each block, the greatest growth (ni-1, nj-1[, nk-1]) at nodes of each cell."""
+    """Return, for each block, the greatest growth (ni-1, nj-1[, nk-1]) at the nodes of each cell."""
     at_nodes = [np.ones(block.counts) for block in grid.blocks]
     for block, values in zip(grid.blocks, at_nodes, strict=True):
         for axis in range(values.ndim):

@@ -13,9 +13,9 @@ Pairing: TypeAlias = Literal["auto", "name", "order"]
 class GridMatcher:
     """Finds, for each grid, the grid of a reference set with which it is compared.
 
-    Pairing is by ``name`` or ``order``. ``auto``: a single reference serves all grids. Several references are
-    paired by name if the first two references have different names, and one of them is the name of the first
-    grid; otherwise by order. References are read only as far as needed.
+    Pairing is by ``name`` or by ``order``. With ``auto``, a single reference serves all grids. Several
+    references are paired by name if the first two have different names and a reference has the name of the
+    first grid. Otherwise they are paired by order. References are read only as far as needed.
     """
 
     def __init__(self, grids: Iterator[Grid], pairing: Pairing = "auto") -> None:
@@ -24,7 +24,7 @@ class GridMatcher:
         self._passed: list[Grid] = []
 
     def match(self, name: str) -> Grid:
-        """Return the reference for the next grid, called `name`. Raises InputError: there is none."""
+        """Return the reference for the next grid, called `name`. Raises InputError: there is none for it."""
         if self._pairing == "auto":
             self._pairing = self._decided(name)
         if self._pairing == "name":

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 def count_folded(nodes: Floats) -> int:
     """Return the number of folded cells of `nodes` (ni, nj, 2), (ni, nj, nk, 3) or (ni, nj, 3).
 
-    No copy is made of `nodes` in planar layout (`meshonet.geometry.arrays`).
+    `nodes` in planar layout (`meshonet.geometry.arrays`) are not copied.
     """
     form = form_of(nodes)
     if form == "volume":
@@ -42,12 +42,12 @@ def count_folded(nodes: Floats) -> int:
 
 
 def count_folded_in(grid: Grid) -> int:
-    """Return the number of folded cells in all blocks of `grid` (`count_folded`)."""
+    """Return the number of folded cells in all blocks of `grid`."""
     return sum(count_folded(block.nodes) for block in grid.blocks)
 
 
 def folded_cells(nodes: Floats) -> NDArray[np.int64]:
-    """Return indices (n, 2) or (n, 3) of folded cells of nodes (`count_folded`), ascending."""
+    """Return the ascending indices (n, 2) or (n, 3) of the folded cells of `nodes` (see `count_folded`)."""
     form = form_of(nodes)
     if form == "volume":
         from meshonet.geometry.quality.volumes import folded_solids
@@ -61,7 +61,7 @@ def folded_cells(nodes: Floats) -> NDArray[np.int64]:
 
 
 def worst_cells(nodes: Floats, limit: int = 10) -> list[BadCell]:
-    """Return at most `limit` folded cells of nodes (`count_folded`), by ascending scaled Jacobian."""
+    """Return up to `limit` folded cells of `nodes` (see `count_folded`), those of least Jacobian first."""
     form = form_of(nodes)
     if form == "volume":
         from meshonet.geometry.quality.volumes import worst_solids
@@ -82,7 +82,7 @@ def worst_cells(nodes: Floats, limit: int = 10) -> list[BadCell]:
 
 
 def worst_cells_of(grid: Grid, limit: int = 10) -> list[BadCell]:
-    """Return at most `limit` folded cells of the blocks of `grid`, block after block."""
+    """Return up to `limit` folded cells of `grid`, block after block."""
     if grid.topology != "blocks":
         return worst_cells(grid.nodes, limit)
     blocks = enumerate(grid.blocks)
@@ -93,7 +93,8 @@ def worst_cells_of(grid: Grid, limit: int = 10) -> list[BadCell]:
 def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
     """Return the quality of `grid`; two cells on both sides of a connection count as neighbours.
 
-    `percentiles` adds the 1st and the 99th percentile of every metric, in four times the time of all else.
+    `percentiles` adds the 1st and the 99th percentile of every metric, which takes four times as long as the
+    rest.
     """
     quality = _compiled(grid, percentiles)
     if not metrics.METRICS:
@@ -138,7 +139,7 @@ def _run(grid: Grid, kept: slice) -> CellRun:
 
 
 def angles(nodes: Floats) -> tuple[float, float]:
-    """Return maximum and mean of cells' largest angles, in degrees; 360 if `nodes` (ni, nj, 2) are folded."""
+    """Return maximum and mean of the cells' largest angles in degrees; 360 if `nodes` (ni, nj, 2) fold."""
     if count_folded(nodes):
         return 360.0, 360.0
     table, _ = _angle_table(nodes)
@@ -146,7 +147,7 @@ def angles(nodes: Floats) -> tuple[float, float]:
 
 
 def widest_cell(nodes: Floats) -> tuple[int, int]:
-    """Return the first cell (i, j) of `nodes` (ni, nj, 2) with the largest included angle."""
+    """Return the cell (i, j) of `nodes` (ni, nj, 2) with the largest included angle; the first of several."""
     _, where = _angle_table(nodes)
     return int(where[1, 0]), int(where[1, 1])
 
@@ -158,7 +159,7 @@ def _angle_table(nodes: Floats) -> tuple[Floats, NDArray[np.int64]]:
 
 
 def per_cell(grid: Grid, name: str) -> Floats:
-    """Return the metric `name` (ni-1, nj-1) in all cells of a block. Raises InputError: no such metric."""
+    """Return the metric `name` (ni-1, nj-1) of all cells of a block. Raises InputError: no such metric."""
     metric = metric_of(grid, name)
     if metric.cells:
         return metric.cells(grid.nodes)
@@ -169,7 +170,7 @@ def per_cell(grid: Grid, name: str) -> Floats:
 
 
 def per_cell_of_blocks(grid: Grid, name: str) -> list[Floats]:
-    """Return the metric `name` (ni-1, nj-1[, nk-1]) in each block. Raises InputError: no such metric."""
+    """Return the metric `name` (ni-1, nj-1[, nk-1]) of each block. Raises InputError: no such metric."""
     metric = metric_of(grid, name)
     if metric.cells:
         return [metric.cells(block.nodes) for block in grid.blocks]

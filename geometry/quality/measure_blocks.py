@@ -17,7 +17,7 @@ _TINY, _LARGE = 1e-300, 1e30  # ratio of areas next to a cell without area, as i
 
 
 def measure_blocks(grid: Grid, folded: int, *, percentiles: bool = False) -> Quality:
-    """Return the quality of planar blocks or patches with `folded` cells; places are (block, i, j)."""
+    """Return the quality of planar blocks or patches with `folded` folded cells; places are (block, i, j)."""
     values = metrics_of_blocks(grid)
     metrics = {
         metric.name: summary_of(metric, [cells[k] for cells in values], percentiles)
@@ -27,7 +27,7 @@ def measure_blocks(grid: Grid, folded: int, *, percentiles: bool = False) -> Qua
 
 
 def metrics_of_blocks(grid: Grid) -> list[Floats]:
-    """Return, for each block, all of `QUAD_METRICS` in all cells: (metrics, ni-1, nj-1)."""
+    """Return, for each block, all `QUAD_METRICS` of all cells, (metrics, ni-1, nj-1)."""
     nodes = [block.nodes for block in grid.blocks]
     if grid.form == "surface":
         values = [quad_metrics(each) for each in nodes]

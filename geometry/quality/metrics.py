@@ -17,7 +17,7 @@ from meshonet.geometry.errors import InputError
 
 @dataclass(frozen=True)
 class Metric:
-    """A quality metric; `worst` is the extreme that is bad, ``min`` or ``max``."""
+    """A quality metric; `worst` says which of its extremes is bad, ``min`` or ``max``."""
 
     name: str
     unit: str
@@ -72,12 +72,12 @@ ALL_NAMES = tuple(dict.fromkeys((*NAMES, *SOLID_NAMES, *map(_NAME, METRICS))))
 
 
 def metrics_of(grid: Grid) -> tuple[Metric, ...]:
-    """Return the metrics of the cells of `grid`: those of quadrilaterals or of volumes."""
+    """Return the metrics of the cells of `grid`: those of quadrilaterals, or those of volumes."""
     return (*(SOLID_METRICS if grid.form == "volume" else QUAD_METRICS), *METRICS)
 
 
 def metric_of(grid: Grid, name: str) -> Metric:
-    """Return the metric called `name`; raise InputError if cells of `grid` have none of that name."""
+    """Return the metric called `name`. Raises InputError: cells of `grid` have no such metric."""
     metrics = (*metrics_of(grid), LINE_METRIC, *(() if grid.form == "surface" else FACE_METRICS))
     for metric in metrics:
         if metric.name == name:

@@ -16,7 +16,7 @@ from meshonet.geometry.elementary import arctan2
 
 @dataclass(frozen=True)
 class Period:
-    """The rotation or translation between periodic sides."""
+    """The rotation or translation from one side of a periodic pair to the other."""
 
     angle: float  # angle of the rotation in degrees, 0 for a translation
     shift: float  # length of the translation, 0 for a rotation
@@ -25,7 +25,7 @@ class Period:
 
 
 def periods(grid: Grid) -> tuple[Period, ...]:
-    """Return the different periods of a grid."""
+    """Return the different rotations and translations between periodic sides of a grid."""
     groups = by_period(grid.connections)
     return tuple(_period(motion, [_sides(grid, each) for each in own]) for motion, own in groups)
 

@@ -19,7 +19,7 @@ Verdict = Literal["pass", "warn", "fail", "none"]
 
 @dataclass(frozen=True)
 class Limit:
-    """A condition that a figure must not meet; `level` is the outcome if it does, warning or failure."""
+    """A condition that a figure must not meet; `level` says whether this is a warning or a failure."""
 
     level: Level
     compare: str  # one of `COMPARE`
@@ -28,7 +28,7 @@ class Limit:
 
 @dataclass(frozen=True)
 class Check:
-    """A figure and its limits."""
+    """A figure (named value) of a profile, and its limits."""
 
     figure: str
     limits: tuple[Limit, ...]
@@ -38,8 +38,8 @@ class Check:
 class CheckResult:
     """The outcome of a check of a profile; `figure` is None if the grid has no such figure.
 
-    `profile` is the name of the profile, `centre` (2,) or (3,) the centre of the cell with the figure.
-    `gated`: a user's gates replace the limits.
+    `profile` is the name of the profile. `centre`, (2,) or (3,), is that of the cell with the figure. `gated`
+    says that gates of the user replace the limits.
     """
 
     check: Check
@@ -60,20 +60,20 @@ class CheckResult:
 
     @property
     def verdict(self) -> Verdict:
-        """The worst outcome of its limits."""
+        """The worst outcome of the limits."""
         if self.figure is None:
             return "none"
         return self.worst.level if self.worst else "pass"
 
     @property
     def worst(self) -> Limit | None:
-        """The limit that the figure exceeds; of several, one that fails rather than one that warns."""
+        """The limit that the figure exceeds; if there are several, a failure comes before a warning."""
         limits = self.check.limits if self.figure else ()
         broken = [x for x in limits if self.figure and beyond(self.figure.value, x.compare, x.value)]
         return max(broken, key=lambda limit: limit.level == "fail", default=None)
 
     def under(self, gates: Sequence[Gate]) -> "CheckResult":
-        """Return the outcome, with limits of `gates` in place of a profile's limits on the same figure."""
+        """Return the outcome with the limits of `gates` on the figure, if any, in place of the profile's."""
         compare = self.check.limits[0].compare
         own = [gate for gate in gates if gate.replaces(self.check.figure, compare)]
         limits = tuple(Limit("fail", gate.compare, gate.limit) for gate in own)
@@ -91,7 +91,7 @@ class ProfileReport:
 
     @property
     def name(self) -> str:
-        """The names of the profiles."""
+        """The names of the profiles, as text."""
         return ", ".join(self.names)
 
     @property
@@ -100,11 +100,11 @@ class ProfileReport:
         return all(result.verdict != "fail" for result in self.results)
 
     def under(self, gates: Sequence[Gate]) -> "ProfileReport":
-        """Return the report, with limits of `gates` in place of a profile's limits on the same figures."""
+        """Return the report with the limits of `gates` in place of profile limits on the same figures."""
         return replace(self, results=_once(result.under(gates) for result in self.results))
 
     def replaced(self) -> list[str]:
-        """Return the limits that replace limits of the profile, as texts such as ``box_ratio > 4000``."""
+        """Return the limits that replace those of profiles, as texts such as ``box_ratio > 4000``."""
         return [
             f"{result.check.figure} {limit.compare} {limit.value:g}"
             for result in self.results
@@ -113,7 +113,7 @@ class ProfileReport:
         ]
 
     def beyond(self) -> list[str]:
-        """Return a text for each exceeded limit, warnings too: ``face_skewness 5.2 > 4``."""
+        """Return a text, such as ``face_skewness 5.2 > 4``, for each exceeded limit, warnings included."""
         return [
             in_short(result.check.figure, result.figure, limit.compare, limit.value)
             for result in self.results
@@ -121,7 +121,7 @@ class ProfileReport:
         ]
 
     def failures(self) -> list[str]:
-        """Return a line for each failed check that gates do not replace."""
+        """Return a line for each failed check whose limits no gate replaces."""
         return [
             f"profile {result.profile}: {result.check.figure} is {result.value:.6g}{result.figure.where}, "
             "and it must "
@@ -170,7 +170,7 @@ PROFILES: dict[str, tuple[Check, ...]] = {
 
 
 def profile_report(figures: Figures, *profiles: str) -> ProfileReport:
-    """Return the results of `profiles` for a grid. Raises InputError: one is not in `PROFILES`."""
+    """Return the results of `profiles` for a grid. Raises InputError: a name that is not in `PROFILES`."""
     for profile in profiles:
         if profile not in PROFILES:
             known = "use one of " + ", ".join(PROFILES)

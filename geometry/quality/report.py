@@ -34,7 +34,7 @@ Gates: TypeAlias = str | Sequence[str | Gate]  # gates, or their texts as in `pa
 
 @dataclass(frozen=True)
 class Comparison:
-    """Distances of nodes from those of a reference grid, and ratios of largest angles, grid to reference."""
+    """Distances of nodes from those of a reference grid, and ratios of largest angles to the reference's."""
 
     difference: Difference
     folded: int  # number of folded cells of the reference
@@ -85,12 +85,12 @@ class QualityReport:
 
     @cached_property
     def y_plus(self) -> dict[str, YPlus]:
-        """The y+ at each wall, by name; empty if no flow is given."""
+        """The y+ at each wall, by the name of the wall; empty without a flow."""
         return y_plus_at(self.grid, self.figures.walls, self.flow) if self.flow else {}
 
     @cached_property
     def wall_skewness(self) -> dict[str, Extreme]:
-        """Skewness of the cells at each wall of a volume, by name."""
+        """Skewness of the cells at each wall of a volume, by the name of the wall."""
         return skewness_at(self.grid, self.figures.walls) if self.grid.form == "volume" else {}
 
     @cached_property
@@ -116,22 +116,12 @@ class QualityReport:
         return replace(self, profile=self.profile.under(_parsed(gates))) if self.profile else self
 
     def broken(self, gates: Gates = ()) -> list[str]:
-        """Return a line for each gate and each profile check by which the grid fails.
+        """Return a line for each gate and each check of a profile by which the grid fails.
 
-        Parameters
-        ----------
-        gates : str or list of str
-            Conditions that must not hold, such as ``max_angle>170`` or ``scaled_jacobian.p01<0.2``.
+        `gates` is one text or several, such as ``max_angle>170`` or ``scaled_jacobian.p01<0.2``: conditions
+        that must not hold. A line gives the value, its place and the limit.
 
-        Returns
-        -------
-        list of str
-            Each line gives the value, its place and the limit. The list is empty if the grid passes.
-
-        Raises
-        ------
-        InputError
-            A text that is not a gate; a metric that this grid does not have.
+        Raises InputError: a text that is not a gate; a metric that this grid does not have.
         """
         return [spelled(line, lambda _: "the gate") for line in self._broken(_parsed(gates))]
 
@@ -150,7 +140,7 @@ class QualityReport:
         return Judgement(tuple(self._broken(gates)), tuple(dict.fromkeys(beyond)), tuple(replaced), profile)
 
     def judged(self, gates: Gates) -> list[tuple[Gate, Figure, bool]]:
-        """Return each gate, the figure that the gate limits, and whether the figure is beyond the limit."""
+        """Return each gate, the figure that it limits, and whether this figure is beyond the limit."""
         more, gates = self._compared(), _parsed(gates)
         figures = [gate.figure(self.figures, more) for gate in gates]
         pairs = zip(gates, figures, strict=True)
@@ -206,9 +196,9 @@ def _parsed(gates: Gates) -> list[Gate]:
 def quality_report(
     grid: Grid, profile: str | Sequence[str] = (), reference: Grid | None = None, flow: Flow | None = None
 ) -> QualityReport:
-    """Measure `grid`, judge it by profiles, and compare it with a `reference` of the same size.
+    """Measure `grid`, judge it by profiles, and compare it with a `reference` of the same node counts.
 
-    A `flow` adds y+ of the walls. Raises InputError: an unknown profile; other node counts of the reference.
+    A `flow` adds y+ at the walls. Raises InputError: an unknown profile; other node counts of the reference.
     """
     profiles = (profile,) if isinstance(profile, str) else profile
     quality = measure(grid, percentiles=True)
@@ -281,16 +271,17 @@ _BEYOND = "beyond the limits of OpenFOAM's checkMesh"
 
 
 def with_checkmesh_notes(notes: tuple[str, ...], grid: object) -> tuple[str, ...]:
-    """Return `notes`, followed by `checkmesh_notes` of a grid unless `notes` contain one."""
+    """Return `notes`, with the `checkmesh_notes` of the grid added unless one is among them."""
     if not isinstance(grid, Grid) or any(note.startswith(_BEYOND) for note in notes):
         return notes
     return (*notes, *checkmesh_notes(grid))
 
 
 def checkmesh_notes(grid: Grid, coarsened: int = 1) -> tuple[str, ...]:
-    """Return a note on limits of checkMesh that a grid, coarsened by the factor `coarsened`, exceeds.
+    """Return a note on the limits of checkMesh that a grid exceeds, or nothing if there are none.
 
-    checkMesh judges no surfaces, so there are no notes on them.
+    If the grid was coarsened by the factor `coarsened`, the note says how this changed growth ratios.
+    Surfaces get no note, because checkMesh does not judge them.
     """
     if grid.form == "surface":
         return ()

@@ -18,7 +18,7 @@ _TINY, _LARGE = 1e-300, 1e30  # in place of 0 in divisors; upper bound of ratios
 
 
 def quad_metrics(nodes: Floats) -> Floats:
-    """Return the metrics `NAMES` (metrics, ni-1, nj-1) of one patch with `nodes` (ni, nj, 3)."""
+    """Return the metrics `NAMES` (metrics, ni-1, nj-1) of the cells of a surface patch (ni, nj, 3)."""
     ring = ring_of(nodes)
     edges = np.roll(ring, -1, axis=0) - ring
     before = np.roll(edges, 1, axis=0)
@@ -48,12 +48,12 @@ def quad_metrics(nodes: Floats) -> Floats:
 
 
 def folded_quads(nodes: Floats) -> NDArray[np.int64]:
-    """Return indices (n, 2) of folded cells of `nodes` (ni, nj, 3)."""
+    """Return the indices (n, 2) of the folded cells of `nodes` (ni, nj, 3)."""
     return np.argwhere(~(_scaled_jacobians(ring_of(nodes)).min(axis=0) > 0)).astype(np.int64)
 
 
 def worst_quads(nodes: Floats, limit: int = 10) -> list[BadCell]:
-    """Return at most `limit` folded cells of `nodes` (ni, nj, 3), by ascending scaled Jacobian."""
+    """Return up to `limit` folded cells of `nodes` (ni, nj, 3), by ascending scaled Jacobian."""
     ring = ring_of(nodes)
     least, centre = _scaled_jacobians(ring).min(axis=0), ring.mean(axis=0)
     places = folded_quads(nodes)
@@ -62,13 +62,13 @@ def worst_quads(nodes: Floats, limit: int = 10) -> list[BadCell]:
 
 
 def bad_cell(place: Iterable[int], centre: Iterable[float]) -> BadCell:
-    """Return the folded cell with indices (i, j) or (i, j, k) and its centre (2 or 3,)."""
+    """Return the folded cell with the indices `place`, (i, j) or (i, j, k), and the `centre` (2 or 3,)."""
     (i, j, *k), (x, y, *z) = map(int, place), map(float, centre)
     return BadCell(i, j, x, y, k=k[0] if k else None, z=z[0] if z else None)
 
 
 def areas(rows: Floats) -> Floats:
-    """Return the areas (m-1, n-1) of the cells of nodes (m, n, 2 or 3), in the plane or in space."""
+    """Return the areas (m-1, n-1) of the cells of nodes `rows` (m, n, 2 or 3)."""
     first, second = rows[1:, 1:] - rows[:-1, :-1], rows[1:, :-1] - rows[:-1, 1:]
     if rows.shape[-1] == 2:
         return 0.5 * np.abs(cross2(first, second))

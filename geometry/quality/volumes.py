@@ -26,12 +26,12 @@ _MOST = 1 << 16  # largest number of folded cells that are searched for the wors
 
 
 def count_folded_solids(nodes: Floats, test: int = CORNERS) -> int:
-    """Return the number of cells of `nodes` (ni, nj, nk, 3) that fail a test, `CORNERS` or `BEZIER`."""
+    """Return how many cells of `nodes` (ni, nj, nk, 3) are folded by a test, `CORNERS` or `BEZIER`."""
     return int(_folded_rows(as_planar(nodes), test).sum())
 
 
 def folded_solids(nodes: Floats, test: int = CORNERS) -> NDArray[np.int64]:
-    """Return indices (n, 3) of the cells of `nodes` (ni, nj, nk, 3) that fail a test, in ascending order."""
+    """Return the ascending indices (n, 3) of cells of `nodes` (ni, nj, nk, 3) that are folded by a test."""
     nodes = as_planar(nodes)
     rows = _folded_rows(nodes, test)
     places = np.empty((int(rows.sum()), 3), dtype=np.int64)
@@ -47,7 +47,7 @@ def _folded_rows(nodes: Floats, test: int) -> NDArray[np.int64]:
 
 
 def worst_solids(nodes: Floats, limit: int = 10, test: int = CORNERS) -> list[BadCell]:
-    """Return at most `limit` cells that fail a test, by ascending scaled Jacobian."""
+    """Return up to `limit` cells of `nodes` that are folded by a test, by ascending scaled Jacobian."""
     i, j, k = folded_solids(nodes, test)[:_MOST].T
     points = {(a, b, c): nodes[i + a, j + b, k + c] for a in (0, 1) for b in (0, 1) for c in (0, 1)}
     least = np.ones(len(i))
@@ -69,7 +69,7 @@ def worst_solids(nodes: Floats, limit: int = 10, test: int = CORNERS) -> list[Ba
 
 
 def measure_volumes(grid: Grid, *, percentiles: bool = False) -> Quality:
-    """Return the quality of all cells of volumes; the places of worst cells are (block, i, j, k)."""
+    """Return the quality of volumes; the places of worst cells are (block, i, j, k)."""
     volumes = padded_volumes(grid)
     cells = grid.cells
     kept = slice(None) if percentiles and cells <= FEW else NONE
@@ -93,7 +93,7 @@ def measure_volumes(grid: Grid, *, percentiles: bool = False) -> Quality:
 
 
 def least_jacobian(blocks: Sequence[Block]) -> float:
-    """Return the least scaled Jacobian of the cells of volumes."""
+    """Return the least scaled Jacobian of all cells of volumes."""
     where = SOLID_NAMES.index("scaled_jacobian")
 
     def least(block: Block) -> float:
@@ -114,7 +114,7 @@ def _nodes_of(grid: Grid) -> list[int]:
 
 
 def solid_metric(grid: Grid, name: str) -> list[Floats]:
-    """Return, for each block of volumes, the metric `name` of all cells (ni-1, nj-1, nk-1)."""
+    """Return, for each block of a grid of volumes, the metric `name` (ni-1, nj-1, nk-1) of its cells."""
     return _metric(grid, padded_volumes(grid), SOLID_NAMES.index(name))
 
 
@@ -124,9 +124,10 @@ def _metric(grid: Grid, volumes: Sequence[Floats], k: int) -> list[Floats]:
 
 
 def padded_volumes(grid: Grid) -> list[Floats]:
-    """Return, for each block, the volumes (ni+1, nj+1, nk+1) of the cells and of a layer around them.
+    """Return, for each block, the volumes (ni+1, nj+1, nk+1) of its cells and of a layer of cells around it.
 
-    Across a connection the layer has the volumes of the neighbour's cells, elsewhere of the nearest cells.
+    Across a connection, this layer has the volumes of the neighbour's cells; elsewhere, it repeats those of
+    the nearest cells.
     """
     padded = over_blocks(_padded, grid.blocks, _nodes_of(grid))
 

@@ -16,19 +16,10 @@ from meshonet.geometry.spacing.y_plus import first_cell
 
 @dataclass(frozen=True)
 class Flow:
-    """The flow for which y+ is computed, with the wall shear stress at the middle of a turbulent flat plate.
+    """The flow for which y+ is computed, from the wall shear stress in the middle of a turbulent flat plate.
 
-    Parameters
-    ----------
-    reynolds : float
-        Reynolds number of the reference length.
-    length : float, optional
-        Reference length in the unit of the grid.
-
-    Raises
-    ------
-    InputError
-        A value out of its range.
+    `reynolds` is the Reynolds number of the reference length, and `length` this length in the unit of the
+    grid. Raises InputError: a value out of its range.
     """
 
     reynolds: float
@@ -48,7 +39,7 @@ class Flow:
 
 @dataclass(frozen=True)
 class YPlus:
-    """y+ of the nodes next to a wall."""
+    """y+ of the first nodes off a wall."""
 
     min: float
     median: float
@@ -56,7 +47,7 @@ class YPlus:
 
 
 def y_plus_at(grid: Grid, walls: Sequence[Patch], flow: Flow) -> dict[str, YPlus]:
-    """Return, by name of the wall, y+ of the first nodes above each of the `walls`."""
+    """Return the y+ of the first nodes off each of the `walls`, by the name of the wall."""
     values: dict[str, list[Floats]] = {}
     for wall in walls:
         rows = rows_at(grid, wall, 2)

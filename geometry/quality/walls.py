@@ -32,7 +32,7 @@ class Spread:
 
 @dataclass(frozen=True)
 class WallRow:
-    """Figures of the cells at a wall; in a multi-block grid, at all walls of one name."""
+    """Figures of the first cells at a wall; in a multi-block grid, at all walls with the same name."""
 
     name: str
     side: str | None  # the side of the block; None if the name is on several sides
@@ -45,9 +45,9 @@ class WallRow:
 def wall_rows(
     grid: Grid, walls: Sequence[Patch], growth: Mapping[str, Extreme] = NO_GROWTH
 ) -> tuple[WallRow, ...]:
-    """Return the figures of the cells at `walls`: for each wall, in a multi-block grid for each name.
+    """Return the figures of the first cells at `walls`: per wall, or per name in a multi-block grid.
 
-    `growth` is the growth along the lines from each wall, by the name of the wall.
+    `growth` is the growth along the grid lines from each wall, by the name of the wall.
     """
     if grid.topology != "blocks":
         return tuple(_row(wall.name, wall.side, [_wall_part(grid, wall)]) for wall in walls)
@@ -117,7 +117,7 @@ def _spread(parts: Sequence[Floats], *, percentile: bool) -> Spread:
 
 
 def skewness_at(grid: Grid, walls: Sequence[Patch]) -> dict[str, Extreme]:
-    """Return, by name of the wall, the skewness of the cells at each of the `walls` of a volume."""
+    """Return the skewness of the cells at each of the `walls` of a volume, by the name of the wall."""
     cells = per_cell_of_blocks(grid, "skewness")
     stretches: dict[str, list[tuple[Floats, Patch]]] = {}
     for wall in walls:

@@ -30,8 +30,9 @@ _WHOLE = 0.2  # largest deviation of a displacement from whole pitches; beyond i
 class BladeSurface:
     """Surface of a blade: the map from a place u around the blade and a height h to (s, theta).
 
-    u is 0 at the leading edge, 0.5 at the trailing edge, 1 at the leading edge again (`BladeProfile`); for s
-    and h see `Channel`. Lines of equal u are splines through the profiles, and straight beyond them.
+    u is 0 at the leading edge, 0.5 at the trailing edge, and 1 at the leading edge again (see
+    `BladeProfile`). For s and h, see `Channel`. theta is the angle about the axis. Lines of equal u are
+    splines through the profiles, and are continued straight beyond them.
 
     Parameters
     ----------
@@ -146,19 +147,19 @@ class BladeSurface:
         return np.asarray(turned - mean - away * self.pitch)
 
     def lines(self, u: Floats) -> CubicTable:
-        """Return splines of s, theta, h along the span at places u (m,); knots are the mean h of profiles."""
+        """Return splines of s, theta, h along the span at places `u` (m,); knots are the profiles' mean h."""
         values = np.stack([profile.at(u) for profile in self.profiles])
         values[..., 1] += self._turns[:, None]
         return CubicTable(values, self.knots)
 
     def at(self, u: Floats, h: Floats) -> Floats:
-        """Return s and theta (p, m, 2) at u (m,) or (p, m), 0 to 1 around the blade, and heights h (p, m)."""
+        """Return s and theta (p, m, 2) at places `u`, (m,) or (p, m), around the blade and `h` (p, m)."""
         return self.crossings(self.lines(u.ravel()), h, len(h) if u.ndim == 1 else 1)
 
     def crossings(self, lines: CubicTable, h: Floats, levels: int = 1) -> Floats:
-        """Return s and theta (..., 2) where `lines` along the span reach heights `h` (...).
+        """Return s and theta (..., 2) at which `lines` along the span reach the heights `h` (...).
 
-        `h` is ordered by level: heights of all lines on the first of `levels`, then on the second, and so on.
+        `h` is ordered by level: all lines on the first of the `levels`, then all on the second, and so on.
         """
         out = np.empty((*h.shape, 2))
         spline_crossings(
@@ -171,19 +172,19 @@ class BladeSurface:
         return out
 
     def section(self, h: float, u: Floats) -> Floats:
-        """Return s and theta (m, 2) at `u` (m,), 0 to 1 around the blade, and at the height `h`."""
+        """Return s and theta (m, 2) at places `u` (m,) around the blade and at the height `h`."""
         return self.crossings(self.lines(u), np.full(len(u), h))
 
     @property
     def edges(self) -> str:
-        """Forms of leading and trailing edge, as text."""
+        """Forms of the leading and of the trailing edge, as text."""
         words = [dict.fromkeys(each.edge(trailing) for each in self.profiles) for trailing in (False, True)]
         leading, trailing = (" or ".join(each) for each in words)
         return f"leading edge {leading}; trailing edge {trailing}"
 
     @property
     def corners(self) -> Floats:
-        """Ascending places u (c,) of the corners that all profiles have."""
+        """Ascending places u (c,) of those corners that all profiles have."""
         return np.sort(np.mod(_common_corners(self.profiles), 1.0))
 
 

@@ -32,9 +32,9 @@ _SAME = 1e-13  # of the distance to a wall, relative to the gap
 
 @dataclass(frozen=True, eq=False)
 class MeridionalMap:
-    """The conformal coordinate m' on a surface of revolution, dm' = dm / r.
+    """The conformal coordinate m' on a surface of revolution, defined by dm' = dm / r.
 
-    m is the arc length of the meridian, r the distance from the axis. Wu, NACA TN 2604 (1952).
+    m is the arc length of the meridian, and r the distance from the axis. Wu, NACA TN 2604 (1952).
     """
 
     forward: CubicTable  # function from s (n,) to m' (n,)
@@ -42,14 +42,14 @@ class MeridionalMap:
 
     @property
     def length(self) -> float:
-        """Coordinate m' of the outlet; at the inlet it is 0."""
+        """Coordinate m' of the outlet (m' of the inlet is 0)."""
         return float(self.forward.values[-1])
 
 
 class Channel:
-    """The channel between hub and casing: maps (s, h) to (x, r).
+    """The channel between hub and casing, which maps (s, h) to x and the radius r.
 
-    s is 0 at the inlet and 1 at the outlet, h 0 at the hub and 1 at the casing.
+    s is 0 at the inlet and 1 at the outlet. h is 0 at the hub and 1 at the casing.
 
     Parameters
     ----------
@@ -114,36 +114,36 @@ class Channel:
         return out.reshape(*s.shape, 2)
 
     def in_space(self, values: Floats) -> Floats:
-        """Return x, y, z (..., 3) of points s, theta, h (..., 3); theta is atan2(y, z)."""
+        """Return x, y, z (..., 3) of points `values` (..., 3), given by s, theta, h; theta is atan2(y, z)."""
         out = np.empty(values.shape)
         channel_space(self._tables, np.ascontiguousarray(values).reshape(-1, 3), out.reshape(-1, 3))
         return out
 
     def store(self, values: Floats, ids: Indices, space: Floats) -> None:
-        """Write x, y, z of points into `space` (levels of the span, n, 3), at the indices `ids` (m,) along n.
+        """Write x, y, z of points into `space` (levels, n, 3), at the indices `ids` (m,) of its second axis.
 
-        `values` (levels, m, 3) are s, theta, h of the points.
+        `values` (levels, m, 3) are s, theta, h of the points on each level of the span.
         """
         channel_nodes(self._tables, values, ids, space)
 
     def lengthen(self, begin: Floats, end: Floats, sizes: Floats) -> None:
-        """Move the points `end` (..., 3), in place, to the distances `sizes` (...) from `begin`.
+        """Move the points `end` (..., 3), in place, to the distances `sizes` (...) from `begin` (..., 3).
 
-        Points are s, theta, h; their distances are measured in x, y, z.
+        Points are s, theta, h. Distances are measured in x, y, z.
         """
         lengthen_cells(self._tables, begin.reshape(-1, 3), sizes.reshape(-1), end.reshape(-1, 3))
 
     def put_on_blade(self, columns: Floats, wall: Floats, first: float) -> None:
         """Move columns of nodes, in place, to begin on the blade with first cells of height `first`.
 
-        `columns` (..., rows, 3) are s, theta, h; `wall` (..., 2) are s, theta on the blade.
-        Displacements fade to 0 at the last node.
+        `columns` (..., rows, 3) are s, theta, h of nodes. `wall` (..., 2) are s, theta of points on the
+        blade. Displacements fade to 0 at the last node of a column.
         """
         flat = columns.reshape(-1, *columns.shape[-2:])
         columns_on_blade(self._tables, wall.reshape(-1, 2), first, flat)
 
     def places(self, points: Floats) -> tuple[Floats, Floats]:
-        """Return s and h (...) of points x, r (..., 2); below 0 or above 1 outside the channel."""
+        """Return s and h (...) of `points` (..., 2) x, r; outside the channel they are below 0 or above 1."""
         p = points.reshape(-1, 2)
         s = self._nearest_line(p)
         part = np.zeros(len(p))
@@ -176,7 +176,7 @@ class Channel:
         return np.asarray(levels[zone] + (part - low) / (high - low) * (levels[zone + 1] - levels[zone]))
 
     def meridional(self, h: float) -> MeridionalMap:
-        """Return m' along the surface of height h."""
+        """Return the coordinate m' along the surface of height `h`."""
         s = self.hub.knots
         points = self.at(s, np.full(s.shape, h))
         speed = norms(CubicTable(points, s).slope(s)) / points[:, 1]
@@ -198,7 +198,7 @@ class Channel:
 
     @cached_property
     def levels(self) -> tuple[float, ...]:
-        """Ascending h of the hub, the ends of the blade at gaps, and the casing."""
+        """Ascending h of the hub, of the ends of the blade at gaps, and of the casing."""
         return tuple(self._levels)
 
 

@@ -14,7 +14,7 @@ from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 def on_cylinder(
     section: Section, about: tuple[float, float], stagger: float, x: float, theta: float
 ) -> tuple[Floats, tuple[str, ...]]:
-    """Return the points (n, 3) of a section wrapped onto a cylinder, with a rounded edge, and notes.
+    """Return the points (n, 3) of a section wrapped onto a cylinder, with a round trailing edge, and notes.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ _AXIAL = 0.2  # largest relative change of the radius along a blade whose solidi
 
 @dataclass(frozen=True)
 class RowDimensions:
-    """Dimensions of a row, lengths in the unit of its files."""
+    """Dimensions of a row of blades, with lengths in the unit of its files."""
 
     blades: int  # number of blades
     pitch: float  # angle in degrees from blade to blade
@@ -42,7 +42,7 @@ class RowDimensions:
 
     @property
     def lines(self) -> dict[str, str]:
-        """Lines of text of the report, by heading."""
+        """Lines of text for the report, by their heading."""
         unit = f" {self.unit}" if self.unit else ""
         gaps = "".join(
             f", {name} gap {gap:.4g}{unit} ({100.0 * gap / self.span:.3g} %)"
@@ -64,7 +64,7 @@ class RowDimensions:
 
 
 def row_dimensions(row: Row) -> RowDimensions:
-    """Return the dimensions of a row."""
+    """Return the dimensions of a row of blades."""
     size = UNITS[row.unit] if row.unit else 1.0
     channel, edges = row.channel, np.array([0.0, 0.5])
     heights = channel.foot, 0.5 * (channel.foot + channel.tip), channel.tip
@@ -89,7 +89,7 @@ def row_dimensions(row: Row) -> RowDimensions:
 
 
 def doubts(dimensions: RowDimensions) -> tuple[str, ...]:
-    """Return notes on probably wrong gaps, numbers of blades and units."""
+    """Return notes on gaps, numbers of blades and units that are probably wrong."""
     notes, unit = [], dimensions.unit or "the unit of the profiles"
     for name in ("tip_gap", "hub_gap"):
         part = getattr(dimensions, name) / dimensions.span

@@ -29,7 +29,7 @@ _OTHER_UNIT = 1.5  # factor between radii of blade and channel from which on the
 class BladeProfile:
     """A profile of a blade in a channel: a closed curve around the blade.
 
-    A place u on it is 0 at the leading edge, grows along the side of larger theta to 0.5 at the trailing
+    A place u on it is 0 at the leading edge. It grows along the side of larger theta to 0.5 at the trailing
     edge, and along the other side to 1.
 
     Parameters
@@ -71,9 +71,9 @@ class BladeProfile:
         self._stops = _ENDS, np.array([0.0, self._sides[0], curve.length])
 
     def cornered(self, counts: Sequence[int]) -> Self:
-        """Return the profile with `counts` (0, 1 or 2) corners at leading and trailing edge.
+        """Return the profile with `counts` (0, 1 or 2) corners at the leading and at the trailing edge.
 
-        Corners are the points of the edge with the largest turns; a single corner becomes the edge itself.
+        Corners are the points with the largest turns near an edge. A single corner becomes the edge itself.
         """
         edges, curve = (self.leading, self.trailing), self.curve
         bend = np.abs(turning(curve.points, closed=True))
@@ -90,7 +90,7 @@ class BladeProfile:
         return made
 
     def aligned(self, places: Floats) -> Self:
-        """Return the profile with the coordinate u redefined so that the corners are at `places` (c,)."""
+        """Return the profile with u redefined so that its corners are at `places` (c,)."""
         made, own = copy(self), self.corner_places()
         u = np.concatenate([_ENDS, places])
         way = np.concatenate([self._stops[1], np.interp(own, *self._stops)])
@@ -109,7 +109,7 @@ class BladeProfile:
         return shortest_ways(arcs - edge, length)
 
     def reshaped(self, plane: Floats, heights: Floats) -> Self:
-        """Return the profile through new points: m' and theta `plane` (n, 2), and `heights` (n,)."""
+        """Return the profile through new points with m', theta in `plane` (n, 2) and h in `heights` (n,)."""
         made = copy(self)
         made.__dict__ = {k: v for k, v in vars(self).items() if k not in ("thickness", "_heights")}
         made.heights = heights
@@ -126,7 +126,7 @@ class BladeProfile:
         return one, two
 
     def edge(self, trailing: bool) -> str:
-        """Return the form of an edge as text, with a hint if points may be missing."""
+        """Return the form of the leading or `trailing` edge as text, with a hint if points may be missing."""
         count = self.corner_counts[trailing]
         if count:
             return {1: "pointed", 2: "blunt"}.get(count, "polygonal")
@@ -138,7 +138,7 @@ class BladeProfile:
         )
 
     def sharpness(self, trailing: bool) -> tuple[float, float]:
-        """Return the largest turn at an edge, in radians, and the two largest as a fraction of all turns."""
+        """Return the largest turn at an edge in radians, and the two largest as a fraction of its turns."""
         bend = np.abs(turning(self.curve.points, closed=True))
         edge = self.trailing if trailing else self.leading
         own = np.sort(bend[np.abs(self._off(self.curve.knots, edge)) < self._reach])
@@ -185,7 +185,7 @@ class BladeProfile:
 
     @cached_property
     def thickness(self) -> float:
-        """Approximate largest difference of theta in radians between both sides."""
+        """Approximate largest difference of theta, in radians, between the two sides."""
         u = np.linspace(0.0, 0.5, _SAMPLES // 2)
         sides = [self.curve.at(self.arcs(places)).T for places in (u, 1.0 - u)]
         at = np.linspace(sides[0][0][0], sides[0][0][-1], _SAMPLES // 2)
@@ -193,17 +193,17 @@ class BladeProfile:
         return float(np.abs(first - second).max())
 
     def arcs(self, u: Floats) -> Floats:
-        """Return the arc lengths (n,) in the plane (m', theta) at places u (n,), 0 to 1."""
+        """Return the arc lengths (n,) in the plane (m', theta) at places `u` (n,) from 0 to 1."""
         return np.asarray(np.mod(self.leading + np.interp(u, *self._stops), self.curve.length))
 
     def corner_places(self) -> Floats:
-        """Return the ascending coordinates u (c,) of all corners around the blade, from -0.25 to 0.75."""
+        """Return the ascending places u (c,) of all corners, from -0.25 to 0.75."""
         u, way = self._stops
         at = np.interp(np.mod(self.curve.corners - self.leading, self.curve.length), way, u)
         return np.sort(wrapped(at, -0.25))
 
     def at(self, u: Floats) -> Floats:
-        """Return s, theta and h (n, 3) at places u (n,)."""
+        """Return s, theta and h (n, 3) at places `u` (n,)."""
         arcs = self.arcs(u)
         m, theta = self.curve.at(arcs).T
         return np.stack([self._map.back(m), theta, self._heights(arcs)], axis=1)

@@ -16,7 +16,7 @@ _STEPS = 3.0  # the same, divided by the longest distance of neighbouring points
 
 
 def as_points(values: ArrayLike, columns: int) -> Floats:
-    """Return `values` as an array (n, columns). Raises InputError: another shape, or no numbers."""
+    """Return `values` as an array (n, columns). Raises InputError: another shape; what is not a number."""
     try:
         points = np.array(values, dtype=np.float64)
     except (TypeError, ValueError):
@@ -29,7 +29,7 @@ def as_points(values: ArrayLike, columns: int) -> Floats:
 
 
 def apart(points: Floats, *, closed: bool) -> Floats:
-    """Return points (n, d) without any that equals the next; if `closed`, the last precedes the first."""
+    """Return points (n, d) without those that equal the next (of the last, if `closed`, the first)."""
     steps = norms(points - np.roll(points, -1, axis=0))
     kept = steps > _SAME * np.ptp(points, axis=0).max(initial=0.0)
     kept[-1:] |= not closed
@@ -48,7 +48,7 @@ def distinct_points(points: Floats) -> Floats:
 
 
 def check_profile(plane: Floats, points: Floats) -> None:
-    """Raise InputError unless `points` (n, 3), at m', theta `plane` (n, 2), go around a blade."""
+    """Raise InputError unless `points` (n, 3), whose m', theta are `plane` (n, 2), go around a blade."""
     size = float(norms(np.ptp(plane, axis=0)))
     steps = norms(plane - np.roll(plane, 1, axis=0))
     if steps[0] > max(_OPEN * size, _STEPS * steps[1:].max()):

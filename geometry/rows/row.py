@@ -121,7 +121,7 @@ class Row:
 
     @cached_property
     def chord(self) -> float:
-        """Length of the longest profile between its edges."""
+        """Distance between the edges of the longest profile."""
         lengths = []
         for points in self.profiles:
             p = np.asarray(points)

@@ -19,12 +19,12 @@ _SIGNS = 1.0, -1.0  # of the sides' distances from the chord: profiles are clock
 
 
 def pointed(profile: BladeProfile, trailing: bool) -> bool:
-    """Return whether an edge of a profile is a point."""
+    """Return whether the leading or `trailing` edge of a profile is a point."""
     return profile.corner_counts[trailing] == 1 and profile.sharpness(trailing)[0] > _POINTED
 
 
 def thick_edged(profile: BladeProfile, trailing: bool) -> BladeProfile:
-    """Return a profile with its pointed leading or trailing edge made round, 0.01 chords thick."""
+    """Return a profile whose pointed leading or `trailing` edge is made round, 0.01 chords thick."""
     curve, length = profile.curve, profile.curve.length
     begin, edge = profile.leading, profile.trailing
     if not trailing:
@@ -70,7 +70,7 @@ LEAST_EDGE = 0.01
 
 
 def round_edged(airfoil: Airfoil) -> tuple[Airfoil, tuple[str, ...]]:
-    """Return the airfoil with a round trailing edge, at least `LEAST_EDGE` chords thick, and notes."""
+    """Return the airfoil with a round trailing edge of at least `LEAST_EDGE` chords, and notes on changes."""
     notes: tuple[str, ...] = ()
     body, height = airfoil, airfoil.gap / airfoil.chord
     name = airfoil.name or "a section"

@@ -25,7 +25,7 @@ _SAME = 1e-9  # of a curve's length
 
 @dataclass(frozen=True)
 class WallPlanes:
-    """The inlet and the outlet plane at which hub and casing are cut."""
+    """The planes at the inlet and at the outlet at which hub and casing are cut."""
 
     # inlet, outlet: positions of the planes; None: at the ends of the curves
     inlet: Plane | None = None
@@ -35,7 +35,7 @@ class WallPlanes:
     unit: str = "m"
 
     def trimmed(self, points: Floats, wall: int) -> tuple[Floats, tuple[str, ...]]:
-        """Return the `points` (n, 2) of x and r of hub (`wall` 0) or casing (1) between planes, and notes.
+        """Return `points` (n, 2), x and r of hub (`wall` 0) or casing (1), cut at the planes, and notes.
 
         Raises InputError: a plane that the curve does not reach; an outlet before the inlet.
         """

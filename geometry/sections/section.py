@@ -21,7 +21,7 @@ MOST_NODES = 10_001  # along the span
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """An outline with its size and position.
+    """The outline of a wing, blade or duct in a plane, with its size and position.
 
     Parameters
     ----------
@@ -39,10 +39,10 @@ class Section:
         Centre of the twist, in chords from the leading edge.
     cant : float or 'panel', optional
         Angle in degrees by which the plane is rotated about the line along x through the leading edge, with
-        the sign of dihedral. ``panel``: the dihedral of the adjacent panels (`Stack.cants`).
+        the sign of a dihedral. ``panel``: by the dihedral of the adjacent panels (see `Stack.cants`).
     nodes : int, optional
-        Number of nodes along the span from the previous section to this section, including the nodes of both;
-        None: the stack decides.
+        Number of nodes along the span from the previous section to this one, with the nodes of both. None: as
+        the stack decides.
 
     Raises
     ------
@@ -76,9 +76,10 @@ class Section:
 
     @property
     def frame(self) -> tuple[Floats, float]:
-        """Leading edge (2,) and chord of the given shape, which is moved and scaled to (0, 0) and 1.
+        """Leading edge (2,) and chord of the given shape, which are moved and scaled to (0, 0) and 1.
 
-        Shapes that nearly have this position and size, as most airfoil files, are unchanged: (0, 0) and 1.
+        Shapes that nearly have this position and size, as in most airfoil files, have (0, 0) and 1 and are
+        left as they are.
         """
         if isinstance(self.shape, Airfoil):
             nose, length = self.shape.leading_edge, self.shape.unit
@@ -90,21 +91,21 @@ class Section:
 
     @property
     def placement(self) -> Floats:
-        """(6,) chord, twist in radians, x, y and both values of `about`; a stack interpolates them in z."""
+        """Chord, twist in radians, x, y and both values of `about` (6,), which a stack interpolates in z."""
         return np.array([self.chord, math.radians(self.twist), self.x, self.y, *self.about])
 
 
 class Fade(NamedTuple):
-    """Weights (n,) at nodes: 1 means the section's twist and chord, 0 no twist and the length `chord`."""
+    """Weights (n,) of nodes: 1 for the section's twist and chord, 0 for no twist and the length `chord`."""
 
     weight: Floats
     chord: float
 
 
 def placed(unit: Floats, placement: Floats, fade: Fade | None = None) -> Floats:
-    """Return nodes (..., n, 2) of sections: nodes `unit` of unit chord, moved to `placement` (..., 6).
+    """Return nodes (..., n, 2) of sections: `unit`, those at unit chord, moved to `placement` (..., 6).
 
-    The six values of a placement are those of `Section.placement`.
+    The six values are those of `Section.placement`.
     """
     chord, twist, x, y, about_x, about_y = (placement[..., k, None] for k in range(6))
     if fade is not None:
@@ -121,9 +122,9 @@ def placed(unit: Floats, placement: Floats, fade: Fade | None = None) -> Floats:
 
 
 def turned(points: Floats, place: Floats, cant: Floats) -> Floats:
-    """Return `points` (..., 3) rotated about lines parallel to x by `cant` (...), in radians from z to y.
+    """Return `points` (..., 3) rotated by `cant` (...) radians about lines parallel to x, from z towards y.
 
-    `place` (..., 2) has y and z of the lines.
+    `place` (..., 2) has the y and z of the lines.
     """
     c, s = cos(cant), sin(cant)
     away, along = points[..., 1] - place[..., 0], points[..., 2] - place[..., 1]

@@ -35,7 +35,7 @@ class Stack:
     kind : {'wing', 'blade', 'duct'}, optional
         A wing ends with a tip, a blade stands between two walls, and a duct has internal flow.
     tip : {'round', 'flat', 'open'}, optional
-        Shape of the tip of a wing; ``open``: not closed.
+        Shape of the tip of a wing; ``open`` leaves it open.
     between : {'linear', 'smooth'}, optional
         Interpolation between sections: linear, or by cubics in z without overshoot.
     tip_spacing : float, optional
@@ -98,12 +98,12 @@ class Stack:
 
     @property
     def panel_cells(self) -> tuple[int | None, ...]:
-        """Number of cells along the span of each panel, None if not given."""
+        """Number of cells along the span of each panel (the part between two sections), None if not given."""
         return tuple(None if each.nodes is None else each.nodes - 1 for each in self.sections[1:])
 
     @property
     def span(self) -> int | None:
-        """Number of nodes along the span, if the numbers of all panels are given."""
+        """Number of nodes along the span; None unless the numbers of all panels are given."""
         cells = [each for each in self.panel_cells if each is not None]
         return sum(cells) + 1 if len(cells) == len(self.panel_cells) else None
 
@@ -120,41 +120,41 @@ class Stack:
 
     @property
     def z(self) -> Floats:
-        """(n,) z of the sections."""
+        """Values (n,) of z of the sections."""
         return np.array([section.z for section in self.sections])
 
     @property
     def chords(self) -> Floats:
-        """(n,) chords of the sections."""
+        """Chords (n,) of the sections."""
         return np.array([section.chord for section in self.sections])
 
     @property
     def chord(self) -> float:
-        """The greatest chord."""
+        """The longest chord."""
         return float(self.chords.max())
 
     @property
     def end(self) -> tuple[float, float, float]:
-        """Leading edge of the last section before the twist."""
+        """Leading edge, before the twist, of the last section."""
         last = self.sections[-1]
         return last.x, last.y, last.z
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on the sections' points and files, and on steep panels."""
+        """Notes on points and files of the sections, and on steep panels."""
         notes = [note for section in self.sections for note in section.shape.notes]
         return tuple(dict.fromkeys([*notes, *filter(None, [self.steep])]))
 
     @property
     def dihedrals(self) -> Floats:
-        """(n - 1,) dihedral of the panels in radians."""
+        """Dihedral angles (n - 1,) of the panels in radians."""
         return arctan2(np.diff([section.y for section in self.sections]), np.diff(self.z))
 
     @property
     def cants(self) -> Floats:
-        """(n,) cant (rotation about x) of the sections in radians.
+        """Cants (n,) of the sections, which are rotations about x, in radians.
 
-        Input ``panel``: the mean dihedral of the adjacent panels, and 0 in a plane of symmetry.
+        The cant ``panel`` is the mean dihedral of the adjacent panels, and 0 in a plane of symmetry.
         """
         panels = self.dihedrals
         own = np.concatenate([[0.0], 0.5 * (panels[1:] + panels[:-1]), panels[-1:]])
@@ -165,10 +165,9 @@ class Stack:
 
     @property
     def steep(self) -> str:
-        """Note on the panel that is most inclined to its sections' normals; empty if inclinations are small.
+        """Note on the panel that is most inclined to the normals of its sections; empty if none is steep.
 
-        A panel is thinner than its sections by the cosine of the angle between section plane and panel
-        normal.
+        A panel is thinner than its sections by the cosine of its angle to the normal of the sections.
         """
         if self.kind != "wing":
             return ""
@@ -184,11 +183,11 @@ class Stack:
         )
 
     def lofted(self, unit: Floats, z: Floats, weight: Floats | None = None) -> Floats:
-        """Return nodes (m, n, 3) of the sections at positions `z` (m,) of the leading edge along the span.
+        """Return nodes (m, n, 3) of sections whose leading edges are at `z` (m,) along the span.
 
         `unit` (sections, n, 2) are nodes of the given sections at unit chord. Shape, chord, twist and
-        position are interpolated separately. Nodes with `weight` (n,) 0 are not twisted, and are scaled
-        by the longest chord; nodes with weight 1 have the section's twist and chord.
+        position are interpolated separately. Nodes whose `weight` (n,) is 1 have the twist and chord of the
+        section. Nodes with weight 0 are not twisted, and are scaled by the longest chord.
         """
         fade = None if weight is None else Fade(weight, self.chord)
         placements = np.stack([section.placement for section in self.sections])
@@ -198,13 +197,13 @@ class Stack:
         return self.canted(nodes, z) if self.cants.any() else nodes
 
     def canted(self, nodes: Floats, z: Floats) -> Floats:
-        """Return `nodes` (m, ..., 3) rotated about the leading edges by the cants at `z` (m,)."""
+        """Return `nodes` (m, ..., 3) of sections at `z` (m,), rotated by their cants about leading edges."""
         values = np.stack([np.array([section.y for section in self.sections]), self.cants], axis=1)
         y, cant = self.between_sections(values, z).reshape(len(z), *[1] * (nodes.ndim - 2), 2).T
         place = np.stack([y.T, z.reshape(y.T.shape)], axis=-1)
         return turned(nodes, place, cant.T)
 
     def between_sections(self, values: Floats, z: Floats) -> Floats:
-        """Return `values` (sections, ...) interpolated at the heights `z` (m,)."""
+        """Return `values` (sections, ...) interpolated to positions `z` (m,)."""
         straight = self.between == "linear" or len(self.sections) == 2
         return monotone_cubic(self.z, values, z, linear=straight)

@@ -16,7 +16,7 @@ from meshonet.geometry.spacing.sampling import Sampling
 
 
 class Annulus:
-    """A body and the closed, clockwise curve of its far field."""
+    """A body, and the closed, clockwise curve of its far field."""
 
     topology: Topology = "o"
 

@@ -34,11 +34,11 @@ FARFIELD = "farfield"
 def assembled(
     shapes: Sequence[Shape], names: Sequence[str], sampling: Sampling, name: str = ""
 ) -> DomainShape:
-    """Return the domain that `shapes` with these `names` form together.
+    """Return the domain that `shapes` form together; `names` has a name for each.
 
-    Airfoils keep their smooth curves; other shapes become polygons. The outer boundary is a shape around all
-    others, or a circle with the radius of `sampling` in extents of all shapes. Raises InputError: shapes that
-    are not closed curves; a far field that does not apply.
+    Airfoils keep their smooth curves; other shapes become polygons. The outer boundary is the shape that is
+    around all others, or else a circle, whose radius is that of `sampling` in extents of all shapes. Raises
+    InputError: shapes that are not closed curves; a far field that does not apply.
     """
     _check_airfoils(shapes, sampling)
     as_asked = [_as_asked(shape, sampling) for shape in shapes]
@@ -98,7 +98,7 @@ def domain_of(shape: Shape, sampling: Sampling) -> DomainShape:
 
 
 def far_loop(middle: Floats, radius: float) -> Loop:
-    """Return the circle around a point (2,), with the domain inside."""
+    """Return the circle around the point `middle` (2,), as a loop with the domain inside."""
     angle = np.linspace(0.0, 2.0 * np.pi, CIRCLE, endpoint=False)
     points = middle + radius * np.stack([cos(angle), sin(angle)], axis=1)
     return Loop(Curve(points, closed=True, corners=()), names=(FARFIELD,))

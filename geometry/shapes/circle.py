@@ -12,7 +12,7 @@ POINTS = 256  # points of the curve, which is within 1e-9 of the radius everywhe
 
 
 class Circle(Outline):
-    """The outline of a circle around the origin. Raises InputError: a radius that is not positive."""
+    """A circle around the origin. Raises InputError: a radius that is not positive."""
 
     def __init__(self, radius: float) -> None:
         if not 1e-9 <= radius <= 1e9:
@@ -23,7 +23,7 @@ class Circle(Outline):
 
 
 def circle(designation: str) -> Circle:
-    """Return the circle with a radius as text, such as ``0.5``. Raises InputError: not positive.
+    """Return the circle whose radius is given as text, such as ``0.5``. Raises InputError: not positive.
 
     >>> circle("0.5").radius
     0.5

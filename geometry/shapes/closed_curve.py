@@ -13,9 +13,9 @@ from meshonet.geometry.shapes.outline import Outline
 
 
 def closed_curve(points: Floats, name: str, places: Sequence[str] = ()) -> Outline | Airfoil:
-    """Return the airfoil or the outline through `points` (n, 2), without repeated neighbours.
+    """Return the airfoil or else the outline through `points` (n, 2), without repeated neighbours.
 
-    `places` are the positions of the points in the input.
+    `places` say where the input has the points.
     """
     keep = np.concatenate([[True], (np.diff(points, axis=0) != 0).any(axis=1)])
     if ends_meet(points):

@@ -56,7 +56,7 @@ class DomainShape:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on what a reader skipped in the file."""
+        """Notes on parts of the file that were left out."""
         return self.domain.notes
 
     def noted(self, *notes: str) -> Self:
@@ -75,7 +75,7 @@ class DomainShape:
 
 
 def itself(shape: Shape) -> Shape:
-    """Return the shape; unlike a lambda, a `partial` of this can be pickled."""
+    """Return `shape`, as a function whose `partial` can be pickled, unlike a lambda."""
     return shape
 
 
@@ -98,20 +98,20 @@ def loops_extent(loops: tuple[Loop, ...]) -> float:
 
 
 def four_sided(domain: Domain) -> bool:
-    """Return whether a domain has no holes, four convex corners and no re-entrant corner."""
+    """Return whether a domain has no holes, exactly four convex corners and no re-entrant corner."""
     outer = domain.loops[0]
     return len(domain.loops) == 1 and len(convex_corners(outer)) == 4 and not (outer.corner_cells > 2).any()
 
 
 def convex_corners(loop: Loop) -> list[int]:
-    """Return the indices of the points of a loop that are convex corners."""
+    """Return the indices of those points of a loop that are convex corners."""
     turn = np.radians(180.0 - loop.corner_angles)
     convex = turns_sharply(turn) & (turn > 0.0)
     return [point for point, is_convex in zip(loop.corners, convex, strict=True) if is_convex]
 
 
 def in_far_field(domain: Domain) -> bool:
-    """Return whether a domain has a single hole and a smooth outer loop that is far away."""
+    """Return whether a domain has a single hole, and a smooth outer loop that is far away from it."""
     if len(domain.loops) != 2 or (domain.loops[0].corner_cells != 2).any():
         return False
     every = (loop.curve.points for loop in domain.loops)

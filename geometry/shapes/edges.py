@@ -26,7 +26,7 @@ _STRAIGHT = 0.5  # a curve is a wall, not a closed outline, if its ends are this
 
 
 class DrawnEdge(NamedTuple):
-    """A side: points (n, 2), the place of each point in the input, and the name of the side, if any."""
+    """A side: its points (n, 2), where the input has each of them, and the name of the side, if any."""
 
     points: Floats
     places: Sequence[str]
@@ -44,11 +44,11 @@ class DrawnEdge(NamedTuple):
 
 
 def channel(walls: Sequence[DrawnEdge], name: str, notes: tuple[str, ...] = ()) -> DomainShape | Outline:
-    """Return the domain between two walls and the straight lines that join their ends; the first is south.
+    """Return the domain between two walls, closed by straight lines between their ends; the first is south.
 
-    Walls have the name ``wall`` by default, and the kind ``wall`` unless the name implies another. The line
-    between first points is ``inlet``, that between last points ``outlet``. Raises InputError: walls that
-    cross; equal neighbours.
+    Walls are called ``wall`` by default and have the kind ``wall`` unless their name implies another. The
+    line between the first points is ``inlet``, the line between the last points ``outlet``. Raises
+    InputError: walls that cross; a point that repeats its neighbour.
     """
     south, north = (_checked(wall)._replace(name=wall.name or "wall") for wall in walls)
     a, b, c, d = south.points[0], south.points[-1], north.points[0], north.points[-1]
@@ -63,10 +63,10 @@ def channel(walls: Sequence[DrawnEdge], name: str, notes: tuple[str, ...] = ()) 
 def four_edges(
     edges: Sequence[DrawnEdge], name: str, notes: tuple[str, ...] = ()
 ) -> Boundary | DomainShape | Outline:
-    """Return the domain of four edges, chained end to end from the first, which is south.
+    """Return the domain of four edges, which are joined end to end from the first, which is south.
 
-    Points become the nodes if opposite edges have equal numbers of points, at least three.
-    Raises InputError: edges that do not meet, or that cross; equal neighbours.
+    If opposite edges have equal numbers of points, at least three, the points become nodes. Raises
+    InputError: edges that do not meet, or that cross; a point that repeats its neighbour.
     """
     chain = _directed(_chained([_checked(edge) for edge in edges]))
     counts = [len(edge.points) for edge in chain]

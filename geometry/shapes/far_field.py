@@ -13,7 +13,7 @@ from meshonet.geometry.errors import InputError
 
 
 def far_circle(centre: Floats, radius: float, n: int, start: float) -> Floats:
-    """Return nodes (n, 2) clockwise on a circle from the angle `start` (radians); ends are equal."""
+    """Return nodes (n, 2) clockwise on a circle from the angle `start` (radians); both ends are equal."""
     angle = start - np.linspace(0.0, 2 * np.pi, n)
     nodes = centre + radius * np.stack([cos(angle), sin(angle)], axis=1)
     nodes[-1] = nodes[0]
@@ -21,7 +21,7 @@ def far_circle(centre: Floats, radius: float, n: int, start: float) -> Floats:
 
 
 def straight(a: Floats, b: Floats, n: int) -> Floats:
-    """Return n equally spaced nodes (n, 2) from `a` (2,) to `b` (2,), bitwise."""
+    """Return `n` equally spaced nodes (n, 2) from `a` (2,) to `b` (2,); the ends are bitwise `a` and `b`."""
     t = np.linspace(0.0, 1.0, n)[:, None]
     nodes = (1 - t) * a + t * b
     nodes[0], nodes[-1] = a, b
@@ -57,12 +57,12 @@ def o_boundary(
     turned: bool = True,
     notes: tuple[str, ...] = (),
 ) -> Boundary:
-    """Return the O boundary of a closed, clockwise `wall` (ni, 2); far-field nodes are evenly on a circle.
+    """Return the O boundary of a closed, clockwise `wall` (ni, 2), with equal steps on a circle as far field.
 
-    If `turned`, the first far-field node is the image of `wall[0]` under the body's conformal map, so that
-    the grid is not sheared; a large turn is noted. Else it is in the direction of `wall[0]` from the centre,
-    as suffices for marching. West and east are the straight cut from `wall[0]` to the far field. `curve`,
-    `name`, `chord` and `notes` are those of `Boundary`.
+    If `turned`, the first far-field node is the image of `wall[0]` under the conformal map of the body, so
+    that the grid is not sheared. A large turn is noted. Otherwise it is in the direction of `wall[0]` from
+    the centre, which suffices for marching. West and east are the straight cut from `wall[0]` to the far
+    field. `curve`, `name`, `chord` and `notes` are those of `Boundary`.
     """
     middle = np.asarray(centre, dtype=np.float64)
     start, note = math.atan2(wall[0, 1] - middle[1], wall[0, 0] - middle[0]), ""

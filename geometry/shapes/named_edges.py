@@ -16,7 +16,7 @@ _BLOCK = 1 << 22  # distances computed at a time
 
 
 class Labelled:
-    """A shape with straight `edges` (n, 2, 2); the `names` (n,) of edges, "" for none, become patch names.
+    """A shape with `names` (n,) of its straight `edges` (n, 2, 2), which become names of patches; "" is none.
 
     Edges with names in `walls` are walls unless the name implies another kind.
     """
@@ -63,7 +63,7 @@ class Labelled:
 
 
 def runs(side: Side, names: Sequence[str], walls: Sequence[str] = ()) -> list[Patch]:
-    """Return the patches of a side whose cells have these `names`; for "" the name is that of the side.
+    """Return the patches of a side whose cells have these `names`; for "", it is the name of the side.
 
     Patches with names in `walls` are walls unless the name implies another kind.
 

@@ -27,11 +27,11 @@ _DEPARTURE = 5e-3  # largest distance of a smooth side from lines between points
 
 
 class Outline:
-    """A closed curve through `points` (n, 2), at least 3, of any unit and orientation.
+    """A closed curve through `points` (n, 2), at least 3, in any unit and direction.
 
     `corners` are the indices of the points that are corners of a quad domain, south-west first. `places` (n,)
-    are positions of points in the input. Raises InputError: too few points; equal neighbours; an outline that
-    crosses itself or has no area.
+    say where the input has the points. Raises InputError: too few points; a point that repeats its neighbour;
+    an outline that crosses itself or has no area.
     """
 
     far_field_unit = "extents of the body"  # unit of the far-field distance
@@ -57,16 +57,16 @@ class Outline:
 
     @property
     def topology(self) -> Topology:
-        """The topology for ``auto``: ``quad`` with four or more convex corners, else ``o``."""
+        """What the topology ``auto`` is: ``quad`` with four or more convex corners, otherwise ``o``."""
         return "quad" if self.corners is not None or len(self._sharp()) >= 4 else "o"
 
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return the four edges of the domain, or the O boundary around the body.
 
         The spacing applies to each edge, or to the whole body. ``auto`` is ``conformal`` around a smooth body
-        (`geometry.conformal.spacing`), else ``uniform``; ``tanh`` has end steps of a quarter of the mean
-        step. Corners are nodes. Raises InputError: a topology or spacing that does not apply; corner indices
-        out of range.
+        (`geometry.conformal.spacing`), otherwise ``uniform``. ``tanh`` has end cells of a quarter of the mean
+        length. Corners are nodes. Raises InputError: a topology or spacing that does not apply; corner
+        indices out of range.
         """
         topology = self.topology if sampling.topology == "auto" else sampling.topology
         if sampling.corners is not None and sampling.topology == "auto":
@@ -181,7 +181,7 @@ class Outline:
         return o_boundary(wall, nj, box.mean(axis=0), radius, curve, self.name, extent, notes=notes)
 
     def clockwise(self) -> Curve:
-        """Return the curve clockwise from its rightmost point or the middle of a right side."""
+        """Return the curve clockwise from its rightmost point, or from the middle of a right side."""
         curve = self.curve.reversed() if self._left else self.curve
         p, n = curve.points, len(curve.points)
         corner = np.isin(np.arange(n), curve.corner_index)
@@ -247,7 +247,7 @@ def _stretches(ends: Sequence[int], n: int) -> list[Indices]:
 
 
 def sides_departure(curve: Curve) -> tuple[str, ...]:
-    """Return a note if the sides deviate visibly from the straight lines between their points."""
+    """Return a note if sides deviate visibly from the straight lines between their points."""
     off = curve.departure()
     visible = off > _DEPARTURE * extent_of(curve.points)
     return (departure_note("the sides are smooth curves", off),) if visible else ()

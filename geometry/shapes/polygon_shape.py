@@ -41,9 +41,10 @@ def polygon_shape(
     rings: Sequence[PolygonRing], name: str = "", notes: tuple[str, ...] = (),
     periodic: Sequence[tuple[str, str]] = (),
 ) -> DomainShape:  # fmt: skip
-    """Return the domain inside the first of the `rings` and outside of the others.
+    """Return the domain inside the first of the `rings` and outside the others.
 
-    `periodic` are pairs of names of sides. Raises InputError: see `ring_loop` and `with_periodic_sides`.
+    `periodic` gives the names of each pair of periodic sides. Raises InputError: as `ring_loop` and
+    `with_periodic_sides`.
     """
     loops = []
     for number, ring in enumerate(rings):
@@ -67,7 +68,7 @@ def polygon_shape(
 
 
 def domain_or_body(shape: Outline | Airfoil) -> Shape:
-    """Return the closed curve `shape`, or the domain inside if the curve has corners, but not four."""
+    """Return `shape` itself, or the domain inside it if it has corners, but not four."""
     if isinstance(shape, Airfoil) or shape.topology != "quad":
         return shape
     points = shape.curve.points
@@ -76,7 +77,7 @@ def domain_or_body(shape: Outline | Airfoil) -> Shape:
 
 
 def default_name(number: int) -> str:
-    """Return the default name of a loop.
+    """Return the default name of the loop with index `number`.
 
     >>> [default_name(number) for number in range(3)]
     ['outer', 'body', 'body2']

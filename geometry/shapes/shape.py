@@ -11,7 +11,7 @@ from meshonet.geometry.spacing.sampling import Sampling
 
 
 class Shape(Protocol):
-    """Anything that can be sampled into a boundary: an airfoil, an outline, a boundary itself."""
+    """Anything from which a boundary can be sampled: an airfoil, an outline, or a boundary itself."""
 
     @property
     def name(self) -> str:
@@ -19,13 +19,13 @@ class Shape(Protocol):
         ...
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return the four edges with the node counts and spacing of `sampling`."""
+        """Return the four edges, with the node counts and the spacing of `sampling`."""
         ...
 
 
 @dataclass(frozen=True, eq=False)
 class SpatialShape:
-    """A grid whose nodes have three coordinates: blocks (ni, nj, nk, 3), or surface patches (ni, nj, 3)."""
+    """A grid with three coordinates: volumes (ni, nj, nk, 3) or surface patches (ni, nj, 3)."""
 
     grid: Grid
 
@@ -36,19 +36,19 @@ class SpatialShape:
 
     @property
     def is_surface(self) -> bool:
-        """Whether all its blocks are surface patches."""
+        """Whether all blocks are surface patches."""
         return all(len(block.counts) == 2 for block in self.grid.blocks)
 
     def boundary(self, sampling: Sampling) -> Boundary:  # noqa: ARG002 - as all shapes have it
-        """Raise InputError: it does not have the four edges of a plane domain."""
+        """Raise InputError: this shape does not have the four edges of a plane domain."""
         problem = "its nodes have three coordinates and the boundary of a plane grid is asked for"
         raise InputError(problem, "use a command that makes volumes: tfi, solve-pde or infer")
 
 
 def edges_of(shape: Shape, sampling: Sampling) -> Boundary:
-    """Return the boundary of `shape`, checked for crossing edges, with its notes.
+    """Return the boundary of `shape` with the notes of both, after a check for crossing edges.
 
-    Raises InputError: errors of `shape`; edges that cross or touch; a body outside its far field.
+    Raises InputError: the errors of `shape`; edges that cross or touch; a body outside its far field.
     """
     if isinstance(shape, Boundary):
         check_edges(shape)  # first as given, so that messages have the user's own node numbers

@@ -38,12 +38,12 @@ _LEAST_WALL = 5  # fewest nodes of a wall, with its trailing edge counted twice
 def cells_of_wake(
     ni: int, nodes_wanted: int | None, first: float, length: float, steps: tuple[int, ...] = (1,)
 ) -> int:
-    """Return the number of cells along the wake of a C grid.
+    """Return the number of cells along the wake of a C grid with `ni` nodes along xi.
 
-    The grid has `ni` nodes along xi, and `nodes_wanted` on the wake if that is given. By default, cells grow
-    by 13 % from `first` over `length`. The number of cells is limited to 20 to 23 % of all cells along xi.
-    Then it is rounded to a multiple of a step: the first of `steps` that is at most a quarter of the number.
-    Raises InputError: too few nodes left for the wall.
+    If `nodes_wanted` is given, it is the number of nodes on the wake. Otherwise cells grow by 13 % from
+    `first` over `length`, and are 20 to 23 % of all cells along xi. Their number is then rounded to a
+    multiple of the first of `steps` that is at most a quarter of it. Raises InputError: too few nodes are
+    left for the wall.
     """
     if nodes_wanted is not None:
         cells = nodes_wanted - 1
@@ -61,7 +61,7 @@ def cells_of_wake(
 
 
 def wake_axis(leading_edge: Floats, trailing_edge: Floats) -> Floats:
-    """Return the unit vector (2,) along which a wake ends: the x axis, or the direction of a steep chord."""
+    """Return the unit vector (2,) along which a wake ends: x, or the direction of a chord that is steep."""
     chord = np.asarray(trailing_edge - leading_edge)
     if abs(chord[1]) <= abs(chord[0]):
         return np.array([math.copysign(1.0, chord[0]), 0.0])
@@ -72,8 +72,8 @@ def wake_line(wall: Floats, axis: Floats, chord: float, length: float, first: fl
     """Return the nodes (cells + 1, 2) of a wake from the sharp trailing edge of a closed `wall` (n, 2).
 
     With x along the `axis` and y to its left, the wake is y = tan(b) l (1 - exp(-x/l)). Here b is the angle
-    of the bisector of the edge (at most 34°), and l the chord. The first cell has the length `first`, the
-    wake along the axis the length `length`.
+    of the bisector of the edge (at most 34°), and l is the chord. The first cell has the length `first`. The
+    wake has the extent `length` along the axis.
     """
     upper, lower = wall[0] - wall[-2], wall[0] - wall[1]
     along = upper / np.hypot(*upper) + lower / np.hypot(*lower)
@@ -90,8 +90,8 @@ def wake_line(wall: Floats, axis: Floats, chord: float, length: float, first: fl
 def growing(first: float, length: float, cells: int) -> Floats:
     """Return distances (cells + 1,) of nodes along a line, in units of `first`, up to `length`.
 
-    From cell k of n to the next, the logarithm of the size increases by g (1 - exp(-k/m)) (1 + b (2k/n - 1)),
-    with constants m and b; g follows from the length.
+    From cell k of n to the next, the logarithm of the cell size increases by g (1 - exp(-k/m)) (1 + b (2k/n -
+    1)). m and b are constants, and g follows from the length.
     """
     if first * cells >= length or cells < 2:
         return np.arange(cells + 1.0)
@@ -110,9 +110,9 @@ def growing(first: float, length: float, cells: int) -> Floats:
 
 
 def rise(behind: Floats, begin: float = _FROM) -> Floats:
-    """Return by how many chords (n,) first-cell heights rise at distances `behind` (n,) an edge, in chords.
+    """Return by how many chords (n,) first cells are higher at distances `behind` (n,) an edge, in chords.
 
-    The rise begins at about the distance `begin` (`BEHIND_BASE` for a base).
+    They rise from about the distance `begin` on (`BEHIND_BASE` for a base).
     """
     return np.asarray(_RISE * behind**2 / ((behind + begin) * (1.0 + behind / _UP_TO)))
 
@@ -130,11 +130,12 @@ def c_boundary(
     chord: float = 0.0,
     notes: tuple[str, ...] = (),
 ) -> Boundary:
-    """Return the C boundary of a closed wall (n, 2) and the wake (m, 2) from its edge to the outlet.
+    """Return the C boundary of a closed `wall` (n, 2) and a `wake` (m, 2) from its edge to the outlet.
 
-    The wall runs clockwise from its sharp trailing edge. The far field in front is a half circle of `centre`
-    and `radius`; the wake ends along the unit vector `axis` (2,). `curve`, `name`, `chord` and `notes` are
-    those of `Boundary`. Raises InputError: the wake leaves the far field, or crosses the wall.
+    The wall runs clockwise from its sharp trailing edge. The wake ends in the direction of the unit vector
+    `axis` (2,). The far field in front is a half circle with `centre` and `radius`. `curve`, `name`, `chord`
+    and `notes` are those of `Boundary`. Raises InputError: the wake leaves the far field, or crosses the
+    wall.
     """
     south = np.concatenate([wake[:0:-1], wall[:-1], wake])
     north = c_far_field(len(wall) - 1, len(wake) - 1, centre, radius, axis, wake[-1])
@@ -143,9 +144,9 @@ def c_boundary(
 
 
 def c_far_field(body: int, wake: int, centre: Floats, radius: float, axis: Floats, outlet: Floats) -> Floats:
-    """Return far-field nodes (body + 2 wake + 1, 2) for a wake to `outlet` (2,); in front steps are equal.
+    """Return far-field nodes (body + 2 wake + 1, 2) for a wake that ends at `outlet` (2,).
 
-    Raises InputError: the outlet is outside of the far field.
+    In front of the body, steps are equal. Raises InputError: the outlet is outside the far field.
     """
     behind, beside = map(float, along_and_across(outlet - centre, axis))
     if behind <= 0 or abs(beside) >= radius:

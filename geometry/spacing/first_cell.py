@@ -13,12 +13,12 @@ AtWalls: TypeAlias = float | Mapping[str, float]
 
 @dataclass(frozen=True, kw_only=True)
 class FirstCell:
-    """First-cell height at walls: fields that several requests share.
+    """First-cell height at walls; several requests have these fields.
 
     Parameters
     ----------
     first_cell : float or mapping, optional
-        Height in the unit of the request; for multi-block grids also heights by name of the wall.
+        Height in the unit of the request; for multi-block grids also a mapping from wall names to heights.
     y_plus : float or mapping, optional
         Height as y+, converted by the friction of a flat plate.
     reynolds : float, optional
@@ -42,7 +42,7 @@ class FirstCell:
 
     @property
     def by_wall(self) -> tuple[str, ...]:
-        """Names of walls with heights of their own; empty if all have one height."""
+        """Names of walls that have heights of their own; empty if all walls have the same height."""
         setting = self.first_cell if self.y_plus is None else self.y_plus
         return tuple(setting) if isinstance(setting, Mapping) else ()
 
@@ -74,7 +74,7 @@ class FirstCell:
             self.heights()  # raises for values out of range
 
     def heights(self, unit: float = 1.0) -> AtWalls | None:
-        """Return the first-cell height in the unit of the request, or by wall; None if not requested.
+        """Return the first-cell height in the unit of the request, or heights by wall; None if not requested.
 
         `unit` is the reference length if `length` is None.
         """
@@ -86,8 +86,8 @@ class FirstCell:
     def height(self, unit: float = 1.0) -> float | None:
         """Return the first-cell height in the unit of the request; None if not requested.
 
-        `unit` is the reference length if `length` is None. Raises InputError: different heights of walls; a
-        value out of range.
+        `unit` is the reference length if `length` is None. Raises InputError: heights by wall; a value out of
+        range.
         """
         height = self.heights(unit)
         if isinstance(height, Mapping):
@@ -106,10 +106,10 @@ class FirstCell:
     def height_notes(
         self, where: str, unit: float = 1.0, in_unit: str = "", scale: float = 1.0
     ) -> tuple[str, ...]:
-        """Return a note on how the first-cell height follows from y+; none without y+.
+        """Return a note on how the first-cell height follows from y+; nothing without y+.
 
-        `where` describes the reference length; `scale` is the factor to the unit of the note, called
-        `in_unit`.
+        `where` describes the reference length. `scale` is the factor from heights to the unit of the note,
+        which is called `in_unit`.
         """
         from meshonet.geometry.spacing.y_plus import height_note
 
@@ -129,7 +129,7 @@ def _values(setting: AtWalls | None) -> tuple[float, ...]:
 
 
 def check_names(names: Iterable[str], known: Iterable[str], parameter: str) -> None:
-    """Raise InputError for the first of the `names` of walls that is not among the `known` names."""
+    """Raise InputError for the first of the wall names `names` that is not among the `known` names."""
     known = tuple(known)
     for name in names:
         if name not in known:

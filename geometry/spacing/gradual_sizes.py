@@ -6,9 +6,9 @@ from meshonet.geometry.arrays import Floats
 
 
 def limited_sizes(sizes: Floats, arcs: Floats, slope: float) -> Floats:
-    """Return the largest sizes (..., n) below `sizes` that change by at most `slope` per arc length.
+    """Return the largest sizes (..., n) below `sizes` whose change per arc length is at most `slope`.
 
-    `sizes` (..., n) are given at ascending `arcs` (n,) along an open curve.
+    `sizes` (..., n) are given at ascending arc lengths `arcs` (n,) along an open curve.
     """
     rise = slope * arcs
     ahead = np.minimum.accumulate(sizes - rise, axis=-1) + rise
@@ -16,9 +16,9 @@ def limited_sizes(sizes: Floats, arcs: Floats, slope: float) -> Floats:
 
 
 def graded(sizes: Floats, arcs: Floats, length: float, slope: float) -> Floats:
-    """Return the largest sizes (n,), at most `sizes` (n,), that change by at most `slope` per arc length.
+    """Return the largest sizes (n,) below `sizes` (n,) whose change per arc length is at most `slope`.
 
-    Sizes are given at ascending `arcs` (n,) along a closed curve of this `length`.
+    Sizes are given at ascending arc lengths `arcs` (n,) along a closed curve of this `length`.
 
     >>> graded(np.array([1.0, 9.0, 9.0, 9.0]), np.array([0.0, 1.0, 2.0, 3.0]), 4.0, 1.0).tolist()
     [1.0, 2.0, 3.0, 2.0]

@@ -19,10 +19,10 @@ def check_growth(growth: float | None, most: float = LARGEST) -> None:
 
 
 def growth_ratio(first: float, length: float, cells: int) -> float:
-    """Return the growth ratio g >= 1 by which `cells` cells, from `first` on, fill `length`.
+    """Return the growth ratio g >= 1 with which `cells` cells, the first of size `first`, fill `length`.
 
-    first (gⁿ - 1)/(g - 1) = length. Raises InputError: equal cells are longer than `length`, or g is above
-    `LARGEST`.
+    It satisfies first (gⁿ - 1)/(g - 1) = length. Raises InputError: equal cells are longer than `length`; g
+    is above `LARGEST`.
 
     >>> growth_ratio(1.0, 7.0, 3)
     2.0
@@ -50,7 +50,7 @@ def growth_ratio(first: float, length: float, cells: int) -> float:
 
 
 def cells_for_growth(first: float, length: float, ratio: float) -> int:
-    """Return the least number of cells from `first` on that fill `length` with growth <= `ratio`.
+    """Return the least number of cells, the first of size `first`, that fill `length` with growth <= `ratio`.
 
     >>> cells_for_growth(1.0, 7.0, 2.0), cells_for_growth(1.0, 7.1, 2.0), cells_for_growth(1.0, 7.0, 1.0)
     (3, 4, 7)
@@ -61,7 +61,7 @@ def cells_for_growth(first: float, length: float, ratio: float) -> int:
 
 
 def growing_steps(first: float, length: float, cells: int, constant: int = 1) -> Floats:
-    """Return cell sizes (cells,) with the sum `length`: `constant` cells of size `first`, then growing ones.
+    """Return cell sizes (cells,) whose sum is `length`: first `constant` cells of size `first`, then growing.
 
     >>> growing_steps(1.0, 9.0, 5, 3).tolist()
     [1.0, 1.0, 1.0, 2.0, 4.0]
@@ -72,9 +72,10 @@ def growing_steps(first: float, length: float, cells: int, constant: int = 1) ->
 
 
 def growth_rate(place: Floats, first: float, length: float, rate: float) -> float:
-    """Return the rate g such that cells of the sizes first · exp(g · place) fill `length`.
+    """Return the rate g for which cells of sizes first · exp(g · place) fill `length`.
 
-    `place` (n,) rises from 0; `rate`, at least g, is where Newton's method starts: the sum is convex in g.
+    `place` (n,) rises from 0. Newton's method starts at `rate`, which must be at least g, as the sum is
+    convex in g.
     """
     for _ in range(100):
         sizes = first * exp(rate * place)

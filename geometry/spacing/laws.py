@@ -18,7 +18,7 @@ Spacing: TypeAlias = str  # name of a spacing, a key of `LAWS`
 
 @dataclass(frozen=True)
 class Law:
-    """A spacing."""
+    """A spacing: a law by which nodes are distributed along a curve."""
 
     place: Callable[[Floats], Floats] | None = None  # the function s(q), 0 to 1; None: set by the curve
     sets_ends: bool = False  # whether the cells at the two ends of a stretch can be prescribed

@@ -28,8 +28,8 @@ class Sampling:
     Parameters
     ----------
     ni, nj : int, optional
-        Number of nodes along xi (around the body) and eta (away from it). None: those of the shape, or for a
-        curve `DEFAULT_NI` and `DEFAULT_NJ`.
+        Numbers of nodes along xi (around the body) and along eta (away from it). None: those of the shape, or
+        `DEFAULT_NI` and `DEFAULT_NJ` for a curve.
     nk : int, optional
         Number of nodes of a volume along zeta. None: that of the given volume. Planar grids have None.
     topology : {'auto', 'quad', 'o', 'c'}, optional
@@ -59,7 +59,7 @@ class Sampling:
         Thickness in chords to which thinner trailing edges of airfoils are opened.
     smooth : float, optional
         Largest distance, in chords, of smoothing splines from the points of an airfoil; three standard
-        deviations of the noise are a good choice. A base that is not higher is closed. Needs SciPy.
+        deviations of the noise are a good choice. A base of at most this height is closed. Needs SciPy.
     refined : int, optional
         The node indices of corners are multiples of this number, so that the grid can be coarsened by it.
     viscous : bool, optional
@@ -135,7 +135,7 @@ class Sampling:
 
     @property
     def radius(self) -> float:
-        """Radius of the far field in chords. Raises InputError: not above 1."""
+        """Radius of the far field in chords. Raises InputError: a value that is not above 1."""
         radius = DEFAULT_FAR_FIELD if self.far_field is None else self.far_field
         if not 1.0 < radius <= 1e6:
             raise InputError(f"{radius:g} chords", "use more than 1 and at most 1e6", parameter="far_field")
@@ -143,7 +143,7 @@ class Sampling:
 
 
 def first_within(steps: tuple[int, ...], most: float) -> int:
-    """Return the first of the descending `steps` that is at most `most`, or the last of them.
+    """Return the first of the descending `steps` that is at most `most`, or else the last of them.
 
     >>> first_within((8, 4, 2, 1), 5.0), first_within((8,), 5.0)
     (4, 8)
@@ -155,7 +155,7 @@ def first_within(steps: tuple[int, ...], most: float) -> int:
 
 
 def nodes_beside(cells: int, every: int) -> str:
-    """Return as text the nearest numbers of nodes whose cells are a multiple of `every`.
+    """Return, as text, the node counts nearest to `cells` + 1 whose cell counts are multiples of `every`.
 
     >>> nodes_beside(49, 4), nodes_beside(3, 4)
     ('49 or 53', '5')

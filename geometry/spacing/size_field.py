@@ -39,13 +39,13 @@ def arcs_by_curvature(
 ) -> Floats:
     """Return arc lengths (cells + 1,) from one end of the trailing edge around the nose to the other.
 
-    The cell size h is a smooth minimum, 1/h⁴ = Σ 1/hₖ⁴, of four sizes: two that start at trailing and leading
-    edge and increase by `GROWTH` times the distance; `TURN` / curvature, whose slope is at most `GROWTH`; and
-    a largest size, for which the integral of ds/h is the number of cells. If cells are too few, growth first
-    rises up to `HURRY` times if `hurried` (C grids). Next, sizes by curvature and at the leading edge
-    increase. When they exceed `_SCARCE` times their values, growth rises too. Last, all sizes are scaled.
-    With `based`, sizes are also limited to `_LONGEST` mean cells, and growth from the trailing edge rises
-    first, up to `RUSH` times, unless `at_edge` is given.
+    The cell size h is a smooth minimum, 1/h⁴ = Σ 1/hₖ⁴, of four sizes. Two start at the trailing and the
+    leading edge and increase by `GROWTH` times the distance. One is `TURN` / curvature, with a slope of at
+    most `GROWTH`. One is a largest size, for which the integral of ds/h is the number of cells. If cells are
+    too few, growth first rises up to `HURRY` times if `hurried` (C grids). Next, sizes by curvature and at
+    the leading edge increase. When they exceed `_SCARCE` times their values, growth rises too. Last, all
+    sizes are scaled. With `based`, sizes are also limited to `_LONGEST` mean cells, and growth from the
+    trailing edge rises first, up to `RUSH` times, unless `at_edge` is given.
 
     Parameters
     ----------
@@ -88,9 +88,9 @@ def arcs_by_curvature(
 
 
 def distances_by_curvature(curve: Curve, begin: float, way: float, cells: int) -> Floats:
-    """Return distances (cells + 1,) of nodes along a closed curve from `begin`, by curvature alone.
+    """Return distances (cells + 1,) of nodes from `begin` along a closed curve, by curvature alone.
 
-    `way` is the length with nodes, negative against the direction of the curve.
+    `way` is the length that gets nodes; it is negative against the direction of the curve.
     """
     s = np.linspace(0.0, abs(way), 2 * _SAMPLES + 1)
     bend = _bend(curve, begin + np.sign(way) * s, curve.length)

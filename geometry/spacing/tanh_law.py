@@ -13,10 +13,11 @@ from meshonet.geometry.errors import InputError
 
 @dataclass(frozen=True)
 class TanhLaw:
-    """Vinokur's two-sided stretching s(q), with q and s in [0, 1], from the slopes ds/dq at the two ends.
+    """Vinokur's two-sided stretching s(q) from the slopes ds/dq at both ends; q and s are from 0 to 1.
 
-    u = 1/2 + tanh(d (q - 1/2)) / (2 tanh(d/2)),  s = u / (a + (1 - a) u), a = sqrt(end/start),  sinh(d)/d =
-    1/sqrt(start end); below 1, tan and sin replace tanh, sinh. Vinokur, J. Comput. Phys. 50 (1983) 215-234.
+    u = 1/2 + tanh(d (q - 1/2)) / (2 tanh(d/2)), s = u / (a + (1 - a) u), a = sqrt(end/start), sinh(d)/d =
+    1/sqrt(start end). If the latter is below 1, tan and sin replace tanh and sinh. Vinokur, J. Comput. Phys.
+    50 (1983) 215-234.
     """
 
     start: float
@@ -49,10 +50,10 @@ class TanhLaw:
 
     @classmethod
     def fitted(cls, cells: float, first: float, last: float, last_part: float = 1.0) -> Self:
-        """Return the law of `cells` cells from step `first` to `last`, met to a relative 1e-6.
+        """Return the law of `cells` cells whose first and last step are `first` and `last`, to within 1e-6.
 
-        The fraction `last_part` (1 or 0.5) of the last cell lies before s = 1; with 0.5, `cells` is no
-        integer. Raises InputError: the steps are too large together, or too few cells are between them.
+        The fraction `last_part` (1 or 0.5) of the last cell lies before s = 1. With 0.5, `cells` is not an
+        integer. Raises InputError: the two steps are too large together, or too few cells are between them.
         """
         start, end = first * cells, last * cells
         for _ in range(60):

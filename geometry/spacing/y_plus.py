@@ -12,7 +12,7 @@ SAME = 1e-6  # largest relative difference of heights that count as the requeste
 def first_cell(y_plus: float, reynolds: float, chord_fraction: float = 0.5) -> float:
     """Return the distance from the wall, in chords, at which y+ has the value `y_plus`.
 
-    The value is that of a turbulent flat plate, x = `chord_fraction` chords behind its leading edge: y+ = y
+    It is that of a turbulent flat plate, at x = `chord_fraction` chords behind its leading edge: y+ = y
     u_τ/ν, u_τ/U = √(C_f/2), C_f = (2 log₁₀ Re_x - 0.65)^-2.3 (`SOURCE`). `reynolds` is that of the chord.
     Raises InputError: a value out of range, or x too small for a turbulent boundary layer.
 
@@ -47,10 +47,10 @@ def first_cell_note(
     where: str = "wall node",
     chord: float = 1.0,
 ) -> str:
-    """Return a sentence that compares first-cell heights, which range from `low` to `high`, with `target`.
+    """Return a sentence that compares first-cell heights, from `low` to `high`, with the height `target`.
 
-    `growth` is the mean growth ratio off the wall, `where` the word for nodes. Unless `chord` is 1, `target`
-    is also in chords.
+    `growth` is the mean growth ratio off the wall. `where` is the word for nodes. Unless `chord` is 1,
+    `target` is also given in chords.
     """
     size = (
         f"{target:.6g}"

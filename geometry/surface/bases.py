@@ -55,9 +55,9 @@ class _Edge(NamedTuple):
 
 
 def with_bases(patches: Sequence[Floats]) -> tuple[list[Floats], list[int], tuple[str, ...]]:
-    """Return the patches and then a base for each open trailing edge; the patch above each base; notes.
+    """Return `patches` (ni, nj, 3) and a base for each open trailing edge; the patch above each base; notes.
 
-    `patches` are (ni, nj, 3). Raises InputError: the ends of a trailing edge have different numbers of cells.
+    Raises InputError: the ends of a trailing edge have different numbers of cells.
     """
     nodes, lattices = merged(patches)
     sides = _open_sides(patches, nodes, lattices)

@@ -14,7 +14,7 @@ _SIDES = ("west", "east", "south", "north")
 
 
 def node_place(nodes: Floats, lattices: tuple[Indices, ...], node: int) -> str:
-    """Return the position of a node as text: the first patch that has it, i, j, x, y, z."""
+    """Return the place of a node as text: the first patch that has it, its i, j and its x, y, z."""
     for number, lattice in enumerate(lattices):
         at = np.argwhere(lattice == node)
         if len(at):
@@ -43,7 +43,7 @@ def check_quads(nodes: Floats, lattices: tuple[Indices, ...], quads: Indices) ->
 
 
 def check_manifold(nodes: Floats, lattices: tuple[Indices, ...], crowded: Indices) -> None:
-    """Raise InputError if there are `crowded` nodes: nodes of an edge of three faces or more."""
+    """Raise InputError if there are `crowded` nodes, which are on an edge of three or more faces."""
     if len(crowded):
         owners = [str(n) for n, k in enumerate(lattices) if (k == crowded[0]).any()]
         problem = f"an edge belongs to three faces or more (patches {', '.join(owners)})"
@@ -52,7 +52,7 @@ def check_manifold(nodes: Floats, lattices: tuple[Indices, ...], crowded: Indice
 
 
 def check_gaps(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> None:
-    """Raise InputError if different nodes of open `edges` (k, 2) nearly coincide."""
+    """Raise InputError if two nodes of open `edges` (k, 2) nearly coincide."""
     if not len(edges):
         return
     length = np.sqrt(((nodes[edges[:, 0]] - nodes[edges[:, 1]]) ** 2).sum(axis=1))
@@ -73,7 +73,7 @@ def check_gaps(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> 
 
 
 def check_seams(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> None:
-    """Raise InputError if nodes of open `edges` (k, 2) lie inside other open edges: sides do not match."""
+    """Raise InputError if sides do not match: nodes of open `edges` (k, 2) lie inside other open edges."""
     ends = nodes[edges]
     along = ends[:, 1] - ends[:, 0]
     length = norms(along)

@@ -9,19 +9,19 @@ from meshonet.geometry.arrays import Indices
 
 
 def ends_of(quads: Indices) -> tuple[Indices, Indices]:
-    """Return the first and last nodes (4 m,) of the half-edges of `quads` (m, 4)."""
+    """Return the first and the last nodes (4 m,) of the half-edges of `quads` (m, 4)."""
     return quads.ravel(), np.roll(quads, -1, axis=1).ravel()
 
 
 def open_sides(quads: Indices, twin: Indices) -> Indices:
-    """Return the corners (k, 4) of the quadrilaterals at open edges; the ends of the edge come first."""
+    """Return the corners (k, 4) of the quadrilaterals at open edges; the ends of the open edge come first."""
     opened = np.flatnonzero(twin < 0)
     around = (opened[:, None] % 4 + np.arange(4)) % 4
     return np.asarray(quads[opened[:, None] // 4, around])
 
 
 def paired(quads: Indices, nodes: int) -> tuple[Indices, Indices]:
-    """Return the twin (4 m,) of each half-edge, -1 at open edges, and surplus half-edges.
+    """Return the twin (4 m,) of each half-edge, -1 at open edges, and the surplus half-edges.
 
     The third and further half-edges of an edge are surplus. `nodes` is the number of nodes.
     """
@@ -40,8 +40,8 @@ def paired(quads: Indices, nodes: int) -> tuple[Indices, Indices]:
 def rings(quads: Indices, twin: Indices, nodes: int) -> tuple[Indices, Indices]:
     """Return the neighbours (n, w) of each node in order around it, padded with -1, and their number (n,).
 
-    All quadrilaterals must have one orientation. A node on an open edge has one neighbour more than
-    quadrilaterals; its first and last neighbours are along open edges.
+    All `quads` must have the same orientation. A node on an open edge has one neighbour more than it has
+    quads; its first and its last neighbour are along open edges.
     """
     first, last = ends_of(quads)
     edges = np.arange(len(first))

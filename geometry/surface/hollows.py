@@ -31,11 +31,11 @@ class Hollows:
     distance: Floats
 
     def sharpest(self) -> tuple[float, int] | None:
-        """Return the smallest angle of a concave edge, in degrees, and a node of this edge, if any."""
+        """Return the smallest angle of a concave edge, in degrees, and a node of it; None without edges."""
         return self._at(int(self.angles.argmin())) if len(self.edges) else None
 
     def nearest(self, surface: Surface, numbers: Indices) -> tuple[float, int] | None:
-        """Return angle, in degrees, and a node of a concave edge near the nodes `numbers` (n,), if any."""
+        """Return the angle (degrees) and a node of a concave edge near the nodes `numbers` (n,), or None."""
         if not len(self.edges):
             return None
         edges = surface.nodes[self.edges[:, 0]]
@@ -48,7 +48,7 @@ class Hollows:
 
 
 def hollows_of(surface: Surface) -> Hollows:
-    """Return the concave edges of a surface; none if their total length is below 1 % of its size."""
+    """Return the concave edges of a surface; none if they are shorter together than 1 % of its size."""
     quads, twin = surface.quads, surface.twin
     x = surface.nodes[quads]
     normal = np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])

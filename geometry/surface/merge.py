@@ -14,7 +14,7 @@ SLANT = np.array([0.5257311, 0.6513887, 0.5470973])
 
 
 def near_pairs(points: Floats, distance: float) -> Indices:
-    """Return the pairs (m, 2) of `points` (n, 3) within `distance` along each axis, the lower index first."""
+    """Return the pairs (m, 2) of `points` (n, 3) within `distance` along each axis, lower index first."""
     along = product(points, SLANT)
     order = np.argsort(along, kind="stable")
     along, window = along[order], distance * float(SLANT.sum()) * (1.0 + 1e-12)
@@ -31,9 +31,10 @@ def near_pairs(points: Floats, distance: float) -> Indices:
 
 
 def merged(patches: Sequence[Floats]) -> tuple[Floats, tuple[Indices, ...]]:
-    """Return all nodes (n, 3) of `patches` (ni, nj, 3), and the node numbers (ni, nj) of each patch.
+    """Return all nodes (n, 3) of `patches` (ni, nj, 3), and for each patch the indices (ni, nj) of its nodes.
 
-    Edge nodes closer than `TOLERANCE` times the size of the surface become one node, the first of them.
+    Nodes on edges that are closer than `TOLERANCE` times the size of the surface become one: the first of
+    them.
     """
     points = np.concatenate([np.ascontiguousarray(patch).reshape(-1, 3) for patch in patches])
     edges = [

@@ -17,9 +17,9 @@ def turned_alike(
 ) -> tuple[list[int], list[int], tuple[int, int] | None]:
     """Return component and sign (1 or -1) of each of `count` patches, and a contradicting pair or None.
 
-    `patch` (4 m,) is the patch of each half-edge, `half_edges` the first and last nodes. Reversing the
-    patches of sign -1 makes the orientation of a component consistent. If a pair of patches contradicts that,
-    the surface is not orientable.
+    `patch` (4 m,) is the patch of each half-edge. `half_edges` are the first and the last nodes of each. If
+    the patches with sign -1 are reversed, each component has a consistent orientation. If a pair of patches
+    contradicts that, the surface is not orientable.
     """
     first, _ = half_edges
     edges = np.flatnonzero(twin > np.arange(len(twin)))
@@ -52,8 +52,8 @@ def turned_alike(
 def closing_axes(nodes: Floats, sides: Indices, planes: Sequence[Plane]) -> list[int]:
     """Return the axes of the planes of symmetry that close a surface.
 
-    `sides` is the result of `open_sides`. If all open edges outside one plane are the rim of a small hole, as
-    at the end of half a fuselage, only the axis of this plane is returned.
+    `sides` is the result of `open_sides`. If all open edges outside one plane are the rim of a small hole,
+    such as the end of half a fuselage, only the axis of this plane is returned.
     """
     axes = sorted({plane.axis for plane in planes})
     slack = FLAT * extent_of(nodes)
@@ -69,7 +69,7 @@ def outward_sign(nodes: Floats, quads: Indices, flat: Sequence[int]) -> int | No
     """Return 1 if consistently oriented `quads` (m, 4) face outwards, -1 if inwards; None if undefined.
 
     Planes normal to the axes `flat` close the surface. The sign is undefined if the vector sum of areas shows
-    that no volume is enclosed, and with planes of two axes, as at the corner of a box.
+    that no volume is enclosed. It is also undefined with planes of two axes, as at the corner of a box.
     """
     if len(flat) > 1:
         return None

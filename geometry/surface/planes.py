@@ -18,7 +18,7 @@ Its mirror image must continue it smoothly; half a closed body may meet its own 
 
 @dataclass(frozen=True)
 class Plane:
-    """All points whose coordinate `axis` (0, 1, 2) is `value`."""
+    """The plane of all points whose coordinate number `axis` (0, 1, 2) is `value`."""
 
     axis: int
     value: float
@@ -30,8 +30,8 @@ class Plane:
 def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
     """Return the planes normal to an axis that contain open edges and have the surface on one side.
 
-    `sides` is the result of `open_sides`. An edge belongs to the plane with the most edges, `FEWEST` or more:
-    a blunt trailing edge at a wing root is straight too.
+    `sides` is the result of `open_sides`. An edge belongs to the plane with the most edges. A plane has at
+    least `FEWEST` edges, because a blunt trailing edge at a wing root is straight too.
     """
     if not len(sides):
         return ()
@@ -53,13 +53,13 @@ def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
 
 
 def edges_in(nodes: Floats, sides: Indices, plane: Plane, slack: float) -> Indices:
-    """Return a mask (k,) of `sides` (k, 4) whose open edge is within `slack` of a plane, but not the face."""
+    """Return which of `sides` (k, 4) have an open edge, but not the face, within `slack` of a plane."""
     near = np.abs(nodes[sides, plane.axis] - plane.value) <= slack
     return np.asarray(near[:, :2].all(axis=1) & ~near[:, 2:].all(axis=1))
 
 
 def slant(nodes: Floats, sides: Indices, plane: Plane) -> float:
-    """Return the mean angle, in degrees, between faces at open edges in a plane and the plane's normal."""
+    """Return the mean angle in degrees between the faces at open edges in a plane and the plane's normal."""
     mine = sides[edges_in(nodes, sides, plane, FLAT * extent_of(nodes))]
     a, b, c, d = (nodes[mine[:, k]] for k in range(4))
     normal = np.cross(c - a, d - b)

@@ -26,11 +26,11 @@ _FEWEST = 3  # fewest rows between a core and the column `at`, and fewest column
 
 @dataclass(frozen=True)
 class PoleCore:
-    """A core and rows of cells that replace the cells around a pole, a side of a patch that is a point.
+    """A core and rows of cells that replace the cells around a pole (a side of a patch that is a point).
 
     Parameters
     ----------
-    nodes : (b + 1, a + 1, 3) nodes of the core, with the orientation of the fan, the patch at the pole.
+    nodes : (b + 1, a + 1, 3) nodes of the core, oriented as the fan (the patch at the pole).
     rows : (r, m + 1, 3) rows from the edge of the core to the column `at`.
     at : index of the first column of the fan (m + 1, n, 3) that is kept.
     """
@@ -41,12 +41,12 @@ class PoleCore:
 
 
 def core_of(fan: Floats, quarters: int, most: int, *, even: bool = False) -> PoleCore:
-    """Return the core of a `fan` (m + 1, n, 3) of curves that leave a pole at j = 0.
+    """Return the core of a `fan` (m + 1, n, 3), whose curves leave a pole at j = 0.
 
-    The core and its rings are rounded, as a march requires; an `even` core is square, without kinks, across
-    which sizes would differ by a factor of up to 2. `quarters` is the angle of the fan in right angles; a
-    closed fan repeats its first curve, with m even. Columns are replaced until cells are square, but at most
-    `most`.
+    The core and its rings are rounded, as a march requires. An `even` core is square; it has no kinks, across
+    which sizes would differ by a factor of up to 2. `quarters` is the angle of the fan in right angles. A
+    closed fan repeats its first curve, and m is even. Columns are replaced until cells are square, but at
+    most `most`.
     """
     m = len(fan) - 1
     steps = norms(np.diff(fan, axis=1)).mean(axis=0)

@@ -34,8 +34,8 @@ class Surface:
     nodes : (n, 3) the table of nodes, in any unit of length.
     lattices : for each patch, the indices (ni, nj) of its nodes; the normal i x j points outwards.
     names : names of the patches, ``wall`` if the file has no names.
-    twin : (4 m,) for each half-edge of `quads`, the opposite half-edge; -1 at open edges (`half_edges`).
-    ring, valence : (n, w) neighbours in order around each node, (n,) number of these (`half_edges.rings`).
+    twin : (4 m,) for each half-edge of `quads`, the opposite half-edge; -1 at open edges.
+    ring, valence : (n, w) neighbours in order around each node, and (n,) their number.
     planes : planes normal to an axis that contain open edges, with the surface on one side of them.
     notes : sentences on what was changed or assumed.
     """
@@ -51,38 +51,38 @@ class Surface:
 
     @property
     def size(self) -> float:
-        """Longest extent of the nodes along an axis."""
+        """Greatest extent of the nodes along any axis."""
         return extent_of(self.nodes)
 
     @property
     def quads(self) -> Indices:
-        """(m, 4) nodes of quadrilaterals, patch after patch, i fastest; counter-clockwise from outside."""
+        """Nodes (m, 4) of all quads, patch after patch, i fastest; counter-clockwise seen from outside."""
         return lattice_quads(self.lattices)
 
     @property
     def open_sides(self) -> Indices:
-        """(k, 4) corners of the quadrilaterals at open edges; both ends of the edge come first."""
+        """Corners (k, 4) of the quads at open edges; both ends of the open edge come first."""
         return open_sides(self.quads, self.twin)
 
     @property
     def open_edges(self) -> Indices:
-        """(k, 2) nodes of open edges, which belong to one quadrilateral only."""
+        """Nodes (k, 2) of open edges, which belong to only one quad."""
         return self.open_sides[:, :2]
 
     def place(self, node: int) -> str:
-        """Return the place of a node as text: patch, i, j, x, y, z."""
+        """Return the place of a node as text: its patch, i, j, x, y, z."""
         return node_place(self.nodes, self.lattices, node)
 
 
 def surface_of(grid: Grid, *, poles: Literal["replace", "refuse"] = "replace") -> Surface:
     """Return the surface that the patches (ni, nj, 3) of a grid form together.
 
-    Poles (sides that are single points) become cores unless `poles` is ``refuse``; open trailing edges are
-    closed; patches with the opposite orientation are reversed along i. Notes say so. A surface that is
-    closed, or that planes normal to one axis close, faces outwards; any other keeps the orientation of most
-    of its area. Raises InputError, with the place: a block that is no patch; an edge of zero length or of
-    three quadrilaterals; sheets that touch in a node; sides that nearly match, or meet with different nodes;
-    a trailing edge whose ends differ; no orientation.
+    Poles (sides that are single points) become cores unless `poles` is ``refuse``. Open trailing edges are
+    closed. Patches with the opposite orientation are reversed along i. Notes say so. A surface that is
+    closed, or that planes normal to one axis close, faces outwards. Any other surface keeps the orientation
+    of most of its area. Raises InputError, with the place: a block that is not a patch; an edge of zero
+    length or of three quads; sheets that touch in a node; sides that nearly match, or meet with different
+    nodes; a trailing edge whose ends differ; no orientation.
     """
     if any(block.nodes.ndim != 3 or block.nodes.shape[-1] != 3 for block in grid.blocks):
         problem = "a surface is made of patches (ni, nj, 3), and a block of this grid is none"

@@ -29,7 +29,7 @@ POLE = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class HexMesh:
-    """Conforming hexahedra, in blocks."""
+    """Conforming hexahedra in blocks that share nodes."""
 
     nodes: Floats  # (n, 3) coordinates
     blocks: tuple[Indices, ...]  # right-handed arrays (ni, nj, nk) of node indices
@@ -42,7 +42,7 @@ class HexMesh:
 
     @cached_property
     def outer(self) -> Bools:
-        """(n,) whether a node is on an unconnected part of a side."""
+        """Whether each node (n,) is on an unconnected part of a side."""
         outer = np.zeros(len(self.nodes), dtype=bool)
         for number, block in enumerate(self.blocks):
             for side in PLACES:
@@ -64,7 +64,7 @@ class HexMesh:
 
     @cached_property
     def beyond(self) -> tuple[Indices, ...]:
-        """Node numbers (ni+2, nj+2, nk+2) of blocks and the layer around: nodes across connections, or -1."""
+        """Node indices (ni+2, nj+2, nk+2) of each block and a layer around: beyond connections, else -1."""
         wider = tuple(np.pad(block, 1, constant_values=-1) for block in self.blocks)
 
         def outside(number: int, side: Side) -> Indices:
@@ -79,18 +79,18 @@ class HexMesh:
         return wider
 
     def with_nodes(self, nodes: Floats) -> Self:
-        """Return the mesh with other coordinates (n, 3)."""
+        """Return the mesh with other coordinates `nodes` (n, 3)."""
         return replace(self, nodes=nodes)
 
 
 def corners_of(values: AnyArray) -> Iterator[AnyArray]:
-    """Yield views (ni-1, nj-1, nk-1) of `values` (ni, nj, nk) at the 8 corners of cells."""
+    """Yield views (ni-1, nj-1, nk-1) of `values` (ni, nj, nk), one for each of the 8 corners of cells."""
     for corner in np.ndindex(2, 2, 2):
         yield values[tuple(slice(c, c + n - 1) for c, n in zip(corner, values.shape, strict=True))]  # type: ignore[misc]
 
 
 def any_corner(nodes: Bools) -> Bools:
-    """Return whether any corner of each cell is in the mask `nodes` (ni, nj, nk)."""
+    """Return for each cell whether any of its corners is in the mask `nodes` (ni, nj, nk)."""
     cells = nodes
     for axis in range(3):
         ends = np.moveaxis(cells, axis, 0)
@@ -99,7 +99,7 @@ def any_corner(nodes: Bools) -> Bools:
 
 
 def second_layer(values: AnyArray, side: Side) -> AnyArray:
-    """Return a view of `values` (ni, nj, nk) in the layer next to a side."""
+    """Return a view of `values` (ni, nj, nk) in the layer of nodes next to a side."""
     axis, end = PLACES[side]
     return np.moveaxis(values, axis, 0)[1 if end == 0 else -2]
 
@@ -107,9 +107,9 @@ def second_layer(values: AnyArray, side: Side) -> AnyArray:
 def exchange(
     connections: Sequence[Connection], outside: FaceValues, inside: FaceValues
 ) -> None:  # fmt: skip
-    """Copy the values just inside each of two connected sides to the layer just outside the other side.
+    """Copy values just inside each of two connected sides to the layer just outside the other one.
 
-    `inside` and `outside` return views of these layers of a block and a side.
+    `inside` and `outside` are functions of block and side that return views of these layers.
     """
     for each in connections:
         own_out, donor_out = each.nodes(lambda block, side: outside(block, side)[..., None])
@@ -118,7 +118,7 @@ def exchange(
 
 
 def hex_mesh_of(grid: Grid) -> HexMesh:
-    """Return the mesh of a grid of volumes. Raises InputError: a block that is no volume, or left-handed."""
+    """Return the mesh of a grid of volumes. Raises InputError: a block that is left-handed or no volume."""
     for number, block in enumerate(grid.blocks):
         if len(block.counts) != 3:
             sizes = " x ".join(map(str, block.counts))
@@ -169,5 +169,5 @@ def _poles(face: Indices, nodes: Floats, near: float) -> list[tuple[Indices, Ind
 
 
 def with_nodes(grid: Grid, mesh: HexMesh) -> Grid:
-    """Return `grid` with the nodes of `mesh`, made from this grid; nodes of connected sides are equal."""
+    """Return `grid` with the nodes of `mesh`, which was made from it; nodes of connected sides are equal."""
     return replace(grid, blocks=tuple(Block(mesh.nodes[block]) for block in mesh.blocks))

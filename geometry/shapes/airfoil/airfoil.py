@@ -35,7 +35,7 @@ _WIDEST_WEDGE = 50.0  # degrees; a C grid by default needs surfaces that meet at
 
 
 class CrossingError(InputError):
-    """Error: the polygon through too few wall nodes crosses itself where the section is thin."""
+    """Error: the polygon through the wall nodes, which are too few, crosses itself in a thin part."""
 
 
 class Airfoil:
@@ -49,8 +49,8 @@ class Airfoil:
                '-------------------'''
                   lower  ---->
 
-    The `points` (n, 2), of any unit and orientation, are cleaned (`clean_section`) unless they are a clean
-    section. `places` (n,) are the positions of points in the input, such as ``line 12``; `notes` say how
+    The `points` (n, 2), in any unit and direction, are cleaned (see `clean_section`) unless they are a
+    `CleanSection`. `places` (n,) say where the input has the points, such as ``line 12``. `notes` say how
     points were changed before. Raises InputError, with the place: the points are no airfoil.
     """
 
@@ -106,9 +106,9 @@ class Airfoil:
 
     @property
     def unit(self) -> float:
-        """Unit of wall cell sizes: the chord, or 1 if the chord differs from 1 by at most 1 %.
+        """Unit of cell sizes at the wall: the chord, or 1 if the chord differs from 1 by at most 1 %.
 
-        The chord of a cambered section exceeds the nominal chord, that of NACA 2412 by 8e-5.
+        The chord of a cambered section exceeds its nominal chord, for NACA 2412 by 8e-5.
         """
         return 1.0 if abs(self.chord - 1.0) < 0.01 else self.chord
 
@@ -123,12 +123,12 @@ class Airfoil:
 
     @property
     def outline_notes(self) -> tuple[str, ...]:
-        """Notes on the outline: an oblique base, ripples, and a curve that deviates from its polygon."""
+        """Notes on the outline: an oblique base, ripples, a curve that deviates from the given polygon."""
         return self.notes + shape_notes(self._section, self.curve, self.chord)
 
     @cached_property
     def inner_corners(self) -> Floats:
-        """Arc lengths of all corners except those of the trailing edge."""
+        """Arc lengths of all corners that are not at the trailing edge."""
         corners = self.curve.corners
         return corners[(corners > self.half_base) & (corners < self.upper_end)]
 
@@ -140,7 +140,10 @@ class Airfoil:
         return Airfoil(points, self.name, notes=self.notes)
 
     def smoothed(self, tolerance: float) -> Airfoil:
-        """Return the airfoil with points on smoothing splines within `tolerance` chords; corners stay."""
+        """Return the airfoil with its points moved to smoothing splines within `tolerance` chords.
+
+        Corners stay.
+        """
         from meshonet.geometry.shapes.airfoil.smooth import smooth_ring, smoothing_notes
 
         ring, most = smooth_ring(self._section, self.nose_radius, tolerance * self.chord)
@@ -149,13 +152,13 @@ class Airfoil:
         return body
 
     def prepared(self, sampling: Sampling) -> Airfoil:
-        """Return the airfoil smoothed, normalised and with an opened trailing edge, as in `sampling`."""
+        """Return the airfoil smoothed, normalised and with a thicker trailing edge, as `sampling` says."""
         body = self.smoothed(sampling.smooth) if sampling.smooth else self
         body = body.normalised() if sampling.normalise else body
         return body.opened(sampling.base) if sampling.base else body
 
     def rounded(self) -> Airfoil:
-        """Return the airfoil with the corners of its blunt base rounded."""
+        """Return the airfoil with rounded corners of its blunt base."""
         if not self.blunt:
             return self
         from meshonet.geometry.shapes.airfoil.trailing_edge import rounded_base
@@ -170,7 +173,7 @@ class Airfoil:
         return body
 
     def moved_apart(self) -> Airfoil:
-        """Return the airfoil; surfaces closer than 9e-5 chords are moved apart to that distance."""
+        """Return the airfoil with surfaces that are closer than 9e-5 chords moved apart to this distance."""
         section = self._section.moved_apart()
         return Airfoil(section.points, self.name, notes=(*self.notes, moved_note(self._section, section)))
 
@@ -206,9 +209,9 @@ class Airfoil:
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return the boundary: the wall, and a circle (O grid) or a half circle and a wake (C grid).
 
-        Topology ``auto`` is ``c`` if cells at the wall will be thin and the trailing edge is sharp, with an
-        angle of at most 50 degrees, after its treatment by `Sampling.te`. Raises InputError: topology
-        ``quad``, or ``c`` with a blunt trailing edge; too few nodes.
+        The topology ``auto`` is ``c`` if cells at the wall will be thin and the trailing edge is sharp (at
+        most 50 degrees, after its treatment by `Sampling.te`). Otherwise it is ``o``. Raises InputError:
+        topology ``quad``; ``c`` with a blunt trailing edge; too few nodes.
         """
         if sampling.topology == "quad":
             raise InputError("topology quad is not made from an airfoil", "use o or c")

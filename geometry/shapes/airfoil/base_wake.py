@@ -57,9 +57,9 @@ _LEAST_WALL = 24  # fewest cells on a wall
 class BaseWake:
     """Lines of nodes around and behind a section with a base (a blunt trailing edge).
 
-    The `wall` (n, 2) runs clockwise from the lower to the upper corner of the base, and the `base` (m, 2)
-    along the straight line between the corners. The wakes `lower` and `upper` (k, 2) run from these corners
-    to the outlet. Corners are bitwise shared.
+    `wall` (n, 2) runs clockwise from the lower to the upper corner of the base. `base` (m, 2) is on the
+    straight line between these corners. The wakes `lower` and `upper` (k, 2) run from the corners to the
+    outlet. At corners, the nodes of all lines are bitwise equal.
     """
 
     wall: Floats
@@ -77,10 +77,10 @@ class BaseWake:
 
 
 def behind_base(body: Airfoil, sampling: Sampling, first: float, growth: float | None) -> BaseWake:
-    """Return the lines at which the C grid of a `body` with a blunt trailing edge starts.
+    """Return the lines from which the C grid of a `body` with a blunt trailing edge starts.
 
-    `first` is the first-cell height at wall and base, in the unit of the body; `growth` limits the growth
-    along base and wake. Raises InputError: too few nodes.
+    `first` is the first-cell height at wall and base, in the unit of the body. `growth` limits the growth
+    ratio along base and wake. Raises InputError: too few nodes.
     """
     ratio = 1.0 + _WITHIN * ((growth or GROWTH) - 1.0)
     points = body.curve.points
@@ -185,7 +185,7 @@ def _fewest(width: float, first: float, ratio: float) -> int:
 
 
 def end_fractions(ends: Floats, cells: int) -> Floats:
-    """Return rows (m, cells + 1) from 0 to 1; first and last steps are `ends` (m,), at most 1/cells."""
+    """Return rows (m, cells + 1) from 0 to 1 whose first and last step is `ends` (m,), at most 1/cells."""
     out = np.zeros((len(ends), cells + 1))
     steps = np.empty(cells)
     for row, end in zip(out, ends.tolist(), strict=True):
@@ -214,7 +214,7 @@ def _wake_cells(
 
 
 def corner_cell(cells: float, first: float, chord: float) -> float:
-    """Return the length of wall cells beside a base: `first`, or more if few `cells` must grow from it."""
+    """Return the length of wall cells at a base: `first`, or more if `cells` are too few to grow from it."""
     side = 0.5 * cells
     return max(first, chord / side * math.pow(_STEEP, -0.5 * side))
 

@@ -29,7 +29,7 @@ _REACH = 8  # number of first and of last points among which the corners of a ba
 class CleanSection:
     """A clean closed polygon (n, 2), clockwise from a sharp trailing edge or the lower corner of a base.
 
-    The base is the segment from the last point, its upper corner, to the first.
+    The base (blunt trailing edge) is the segment from the last point, its upper corner, to the first.
     """
 
     points: Floats
@@ -40,7 +40,7 @@ class CleanSection:
     swapped: tuple[int, ...] = ()  # indices of given points that were in the wrong order
 
     def moved_apart(self) -> Self:
-        """Return the section with nearly touching surfaces moved apart (`separate_surfaces`)."""
+        """Return the section with surfaces that nearly touch moved apart (see `separate_surfaces`)."""
         from meshonet.geometry.shapes.airfoil.separate_surfaces import moved_apart
 
         edge = 0.5 * (self.points[0] + self.points[-1]) if self.blunt else self.points[0]
@@ -48,11 +48,11 @@ class CleanSection:
 
 
 def clean_section(points: Floats) -> CleanSection:
-    """Return the section of `points` (n, 2), of either orientation.
+    """Return the section through `points` (n, 2) in either direction.
 
-    Points start at the trailing edge, unless the other end is clearly sharper. Repeated points and those on a
-    straight base are removed, neighbours in the wrong order swapped.
-    Raises InputError: fewer than 4 distinct points; no area; ends too far apart for a trailing edge.
+    The first point is taken as the trailing edge unless the other end is clearly sharper. Repeated points and
+    points on a straight base are removed. Neighbours in the wrong order are swapped. Raises InputError: fewer
+    than 4 distinct points; no area; ends too far apart for a trailing edge.
     """
     raw = np.asarray(points, dtype=np.float64)
     extent = float(np.hypot(*np.ptp(raw, axis=0))) if len(raw) else 0.0

@@ -28,9 +28,9 @@ _KNOWN = "use four digits such as 2412 or five such as 23012, with -sharp for a 
 
 
 def naca(designation: str) -> Airfoil:
-    """Return the airfoil of a designation such as ``2412``, ``23012`` or ``0012-sharp``, with chord 1.
+    """Return the airfoil, with chord 1, of a designation such as ``2412``, ``23012`` or ``0012-sharp``.
 
-    Raises InputError: not a known airfoil.
+    Raises InputError: an unknown designation.
 
     >>> naca("2412").name, naca("0012").blunt, naca("0012-sharp").blunt
     ('NACA 2412', True, False)
@@ -42,7 +42,7 @@ def naca(designation: str) -> Airfoil:
 
 
 def naca_points(designation: str, n: int = POINTS) -> Floats:
-    """Return points (2 n - 1, 2) from the trailing edge over the top and back, with cosine spacing in x."""
+    """Return points (2 n - 1, 2) from the trailing edge over the top and back, with a cosine spacing in x."""
     digits, sharp = _split(designation)
     x = 0.5 - 0.5 * cos(np.linspace(0.0, np.pi, n))
     half = thickness(x, int(digits[-2:]) / 100, sharp=sharp)
@@ -54,9 +54,9 @@ def naca_points(designation: str, n: int = POINTS) -> Floats:
 
 
 def thickness(x: Floats, ratio: float, *, sharp: bool = False) -> Floats:
-    """Return the half thickness in chords, at x (any shape, 0 to 1), of a section of thickness `ratio` t.
+    """Return the half thickness in chords, at `x` (any shape, 0 to 1), of a NACA section with `ratio` t.
 
-    y = 5 t (0.2969 √x - 0.1260 x - 0.3516 x² + 0.2843 x³ - 0.1015 x⁴); sharp: 0.1036 in place of 0.1015.
+    y = 5 t (0.2969 √x - 0.1260 x - 0.3516 x² + 0.2843 x³ - 0.1015 x⁴). If `sharp`, 0.1036 replaces 0.1015.
     """
     last = -0.1036 if sharp else -0.1015
     inner = 0.2969 * np.sqrt(x) + x * (-0.1260 + x * (-0.3516 + x * (0.2843 + x * last)))

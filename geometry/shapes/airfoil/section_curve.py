@@ -36,7 +36,7 @@ _PARTS = 128  # parts of a stretch in the search for the point farthest from the
 
 
 def swapped_note(section: CleanSection, places: Sequence[str]) -> tuple[str, ...]:
-    """Return a note on points of a section that were in the wrong order."""
+    """Return a note on points of a section that were in the wrong order, if any."""
     named = ", ".join(places[k] if places else f"point {k}" for k in section.swapped[:6])
     more = ", ..." if len(section.swapped) > 6 else ""
     return (Change(f"the outline is changed: points in the wrong order are swapped ({named}{more})"),)
@@ -45,10 +45,10 @@ def swapped_note(section: CleanSection, places: Sequence[str]) -> tuple[str, ...
 def section_curve(
     section: CleanSection, places: Sequence[str]
 ) -> tuple[Curve, tuple[str, ...], InputError | None]:
-    """Return the curve through the points of a section, notes, and an error if its surfaces cross.
+    """Return the curve through the points of a section, notes, and an error if its surfaces cross (or None).
 
-    Surfaces that cross by rounding are moved apart (`shapes.airfoil.separate_surfaces`); intervals in which
-    the curve would cross itself are made straight.
+    Surfaces that cross only by rounding are moved apart (see `shapes.airfoil.separate_surfaces`). Intervals
+    in which the curve would cross itself are made straight.
     """
     notes: list[str] = []
     crossed = None
@@ -80,7 +80,7 @@ def section_curve(
 
 
 def moved_note(before: CleanSection, section: CleanSection) -> str:
-    """Return a note that says how far the surfaces of `section` were moved apart."""
+    """Return a note on how far the surfaces of `section` were moved apart."""
     off = section.points - before.points
     edge = before.points[0]
     chord = float(np.hypot(*(before.points - edge).T).max())
@@ -94,7 +94,7 @@ def moved_note(before: CleanSection, section: CleanSection) -> str:
 
 
 def sign_changes(curve: Curve, chord: float) -> int:
-    """Return how often a section's curvature changes its sign, without corners."""
+    """Return how often the curvature of a section changes its sign, corners left out."""
     points = curve.points
     steps = norms(np.concatenate([points[1:], points[:1]]) - points)
     bend = turning(points, closed=True) * (2.0 * chord) / (steps + np.concatenate([steps[-1:], steps[:-1]]))
@@ -104,7 +104,7 @@ def sign_changes(curve: Curve, chord: float) -> int:
 
 
 def nose_radius(curve: Curve, middle: float, edge: Floats, chord: float) -> float:
-    """Return the radius of curvature at arc length `middle`, the leading edge (`Airfoil.nose_radius`)."""
+    """Return the radius of curvature at the leading edge, which is at arc length `middle`."""
     nose = curve.at(np.array([middle]))[0]
     axis = (edge - nose) / chord
     step = np.linspace(0.0, 0.2 * chord, 81)
@@ -116,7 +116,7 @@ def nose_radius(curve: Curve, middle: float, edge: Floats, chord: float) -> floa
 
 
 def shape_notes(section: CleanSection, curve: Curve, chord: float) -> tuple[str, ...]:
-    """Return notes on an oblique base, ripples, and deviation from the polygon."""
+    """Return notes on an oblique base, on ripples, and on a curve that deviates from its polygon."""
     notes = _oblique_base(section, chord)
     count = sign_changes(curve, chord)
     if count >= RIPPLES:
@@ -155,8 +155,8 @@ def _oblique_base(section: CleanSection, chord: float) -> tuple[str, ...]:
 def base_note(wall: Floats, corner: Floats, base: float, chord: float, *, fixed: bool) -> tuple[str, ...]:
     """Return a note if a base uses most nodes, or if cell sizes jump at its lower corner.
 
-    `wall` (n, 2) runs from the middle of the base, which has length `base` and ends at `corner` (2,). The
-    user may have `fixed` the number of nodes on the base.
+    `wall` (n, 2) runs from the middle of the base, whose length is `base` and whose lower corner is `corner`
+    (2,). `fixed` says that the user gave the number of nodes on the base.
     """
     steps = norms(np.diff(wall, axis=0))
     arcs = np.cumsum(steps)
@@ -184,13 +184,13 @@ def base_note(wall: Floats, corner: Floats, base: float, chord: float, *, fixed:
 
 
 def opened_note(height: float, thickness: float) -> str:
-    """Return the note on a trailing edge opened from `height` to `thickness`, in chords."""
+    """Return the note on a trailing edge that was opened from `height` to `thickness`, in chords."""
     was = f"its trailing edge, {height:.2g} chords thick,"
     return Change(f"the outline is changed: {was} is opened to {thickness:g}")
 
 
 def edge_notes(before: Airfoil, after: Airfoil, te: TrailingEdge, option: TrailingEdge) -> tuple[str, ...]:
-    """Return a note on how `te` changed the base; or, if nothing changed, that `option` has no effect."""
+    """Return a note on how the treatment `te` changed the base, or that `option` has no effect, if so."""
     base = f"the outline is changed: its base, {before.gap / before.chord:.3g} chords wide,"
     if before.blunt and te == "wedge":
         length = float(np.hypot(*(after.trailing_edge - before.trailing_edge))) / before.chord
@@ -217,7 +217,7 @@ def _crossed(section: CleanSection, crossing: Crossing, places: Sequence[str]) -
 def farthest_arc(curve: Curve, point: Floats) -> float:
     """Return the arc length of the point of the curve that is farthest from `point`.
 
-    If several points are equally far (a flat nose), the middle one counts, so that symmetry is kept.
+    If several points are equally far (a flat nose), it is the middle one, so that symmetry is kept.
     """
     s = np.concatenate([curve.knots, 0.5 * (curve.knots + np.append(curve.knots[1:], curve.length))])
     s = np.sort(s)

@@ -13,8 +13,8 @@ _WEDGE = 0.02  # near an edge the least thickness is this fraction of the distan
 def moved_apart(ring: Floats, nose: int) -> Floats:
     """Return a closed polygon (n, 2) whose two surfaces are moved apart, by up to `MOST` chords each.
 
-    The polygon runs clockwise from the trailing edge. The trailing edge and the leading edge, index `nose`,
-    do not move.
+    The polygon `ring` runs clockwise from the trailing edge. This point and the leading edge, which has the
+    index `nose`, do not move.
     """
     chord = float(np.hypot(*(ring[nose] - ring[0])))
 
@@ -25,9 +25,10 @@ def moved_apart(ring: Floats, nose: int) -> Floats:
 
 
 def wedged_apart(ring: Floats, nose: int, thin: float) -> Floats:
-    """Return a closed polygon (n, 2), near its trailing edge at least as thick as a wedge.
+    """Return a closed polygon (n, 2) that is at least as thick as a wedge near its trailing edge.
 
-    The wedge is as thick as a base at first, and ends where it has the thickness `thin`.
+    The wedge begins with the thickness of the base, and ends where the polygon `ring` has the thickness
+    `thin`.
     """
 
     def least(places: Floats, thickness: Floats) -> Floats:

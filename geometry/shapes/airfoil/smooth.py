@@ -32,9 +32,9 @@ _HEAVIER = 2.0  # factor of the weight of an outlier in each round
 
 
 def smooth_ring(section: CleanSection, nose_radius: float, limit: float) -> tuple[Floats, float]:
-    """Return the points (n, 2) of a section moved to splines within `limit`, and the largest displacement.
+    """Return the points (n, 2) of a section, moved to splines within `limit`, and the largest displacement.
 
-    Corners are kept. A base is closed if it is narrower than `limit`, or noise has swapped its ends. Where
+    Corners are kept. A base is closed if it is narrower than `limit`, or if noise has swapped its ends. Where
     noise could close the section, its thickness stays at least that of a wedge. Raises InputError: SciPy is
     not installed.
     """

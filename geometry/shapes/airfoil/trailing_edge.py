@@ -37,9 +37,9 @@ _WEDGE_POINTS = 9  # on each side of a wedge
 
 
 def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
-    """Return the curve of a blunt section with rounded corners of the base, and where the rounding ends.
+    """Return the curve of a blunt section with rounded corners of its base, and where the rounding ends.
 
-    Both closed curves begin at the middle of the base. The second and the last point of `curve` are the
+    Both closed curves begin in the middle of the base. The second and the last point of `curve` are the
     corners of the base.
     """
     length, half = curve.length, float(curve.knots[1])
@@ -60,10 +60,10 @@ def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
 
 
 def half_rounds(curve: Curve, end: float, cells: int) -> tuple[Floats, Floats]:
-    """Return distances (n + 1,) of nodes from the middle, on each half of a rounded base, lower first.
+    """Return distances (n + 1,) of nodes from the middle of a rounded base, on its lower and its upper half.
 
-    Cells are smaller where the curve, averaged over four cells, turns more. `curve` and `end` are the results
-    of `rounded_base`. `cells`, at least 3, is the number of cells on a half that turns by 90 degrees.
+    Cells are smaller where the curve turns more (on average over four cells). `curve` and `end` are the
+    results of `rounded_base`. `cells`, at least 3, is the number of cells on a half that turns by 90 degrees.
     """
     per_cell = 64
     n = per_cell * cells  # on either half; index n is the middle
@@ -99,10 +99,10 @@ def _fillet(curve: Curve, begin: float, corner: float, end: float) -> Floats:
 
 
 def wedged_base(section: CleanSection, tangents: tuple[Floats, Floats]) -> CleanSection:
-    """Return a blunt section with a wedge added; the result starts at the tip of the wedge.
+    """Return a blunt section closed by a wedge; the result starts at the tip of the wedge.
 
     `tangents` are unit directions (2,) of the lower and the upper surface at the base. Points of the wedge
-    may be closer than points of a file, and are not cleaned.
+    are not cleaned, because they may be closer to each other than points of a file.
     """
     points, (lower, upper) = section.points, tangents
     gap = float(np.hypot(*(points[0] - points[-1])))
@@ -131,7 +131,7 @@ def wedged_base(section: CleanSection, tangents: tuple[Floats, Floats]) -> Clean
 
 
 def opened_base(airfoil: Airfoil, gap: float) -> CleanSection:
-    """Return a section opened to a base `gap`: points move in proportion to their distance from the nose."""
+    """Return a section with a base of height `gap`; points move in proportion to distances from the nose."""
     curve, section = airfoil.curve, airfoil._section
     points, knots, index, corners = curve.points, curve.knots, section.index, section.corners
     if airfoil.blunt:

@@ -43,7 +43,7 @@ _SMALLER = 64.0  # largest factor by which cells beside a base are smaller for t
 
 @dataclass(frozen=True)
 class WallCells:
-    """Numbers of cells on half the base and on a side, and lengths of cells at trailing and leading edge."""
+    """Numbers of cells on half the base and on a side; lengths of cells at trailing and leading edge."""
 
     half: int
     cells: float
@@ -55,7 +55,7 @@ class WallCells:
 
 
 def planned_arcs(body: Airfoil, ni: int, sampling: Sampling) -> Floats:
-    """Return the arc lengths (ni,) of wall nodes; cell sizes at the edges follow from `sampling`."""
+    """Return the arc lengths (ni,) of wall nodes, with the cell sizes at edges that `sampling` implies."""
     plan = _plan(body, ni - 1, sampling)
     if sampling.spacing == "curvature":
         from meshonet.geometry.spacing.size_field import arcs_by_curvature
@@ -85,8 +85,8 @@ def planned_arcs(body: Airfoil, ni: int, sampling: Sampling) -> Floats:
 def arcs_to_corners(body: Airfoil, cells: int, sampling: Sampling, first: float, ratio: float) -> Floats:
     """Return arc lengths (cells + 1,) of nodes from the lower to the upper corner of a base, by curvature.
 
-    Cells at the corners have the length `first`, unless `te_spacing` is given, and grow by at most `ratio`.
-    Corners are nodes.
+    Cells at the corners have the length `first` unless `te_spacing` is given. From there they grow by at most
+    `ratio`. All corners are nodes.
     """
     from meshonet.geometry.spacing.size_field import arcs_by_curvature
 
@@ -107,9 +107,9 @@ def arcs_to_corners(body: Airfoil, cells: int, sampling: Sampling, first: float,
 
 
 def half_of_base(cells: int, nodes: int, sampling: Sampling) -> int:
-    """Return the number of cells on half of a base with `nodes` nodes.
+    """Return the number of cells on half of a base that has `nodes` nodes.
 
-    Raises InputError: no node in the middle of the base; too few cells left for the sides.
+    Raises InputError: no node in the middle of the base; too few cells are left for the sides.
     """
     base = nodes - 1
     if base % (2 * sampling.refined):
