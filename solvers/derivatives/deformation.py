@@ -21,8 +21,8 @@ Lines = dict[str, Floats]
 class DeformationDerivative:
     """A planar grid deformed in one step, and the derivative of its nodes with respect to its wall nodes.
 
-    Raises InputError: as `meshonet.deform`; the grid is a volume. Raises NoValidGridError: cells fold in one
-    step.
+    Raises InputError as `meshonet.deform`, or if the grid is a volume. Raises NoValidGridError if cells fold
+    in one step.
     """
 
     grid: Grid  # the deformed grid
@@ -46,7 +46,7 @@ class DeformationDerivative:
         self._there = self._follow.boundary_to(targets.nodes)
 
     def along(self, moves: Mapping[str, Floats]) -> list[Floats]:
-        """Return the derivative (ni, nj, 2) of each block's nodes along `moves` (n, 2) of the wall nodes."""
+        """Return the linear response (ni, nj, 2) of each block's nodes to displacements (n, 2) of walls."""
         move = np.zeros_like(self._to)
         for name, values in moves.items():
             move[self.walls[name]] = self._checked(name, values)
@@ -61,8 +61,8 @@ class DeformationDerivative:
     def transposed(self, pulls: Floats | Sequence[Floats]) -> Lines:
         """Return the derivative (n, 2) of a functional with respect to the nodes of each moved wall.
 
-        `pulls` (ni, nj, 2), one array per block, is the derivative of the functional by all nodes as
-        independent variables. A closed wall repeats its first node; the last entry is then 0.
+        `pulls` has an array (ni, nj, 2) for each block: the derivative of the functional by all nodes as
+        independent variables. A closed wall repeats its first node; its last entry is then 0.
         """
         arrays = [pulls] if isinstance(pulls, np.ndarray) else list(pulls)
         if [a.shape[:2] for a in arrays] != [block.counts for block in self.grid.blocks]:

@@ -19,7 +19,7 @@ Equations = Callable[[Floats], Floats]
 
 @dataclass(frozen=True, eq=False)
 class Jacobian:
-    """Entries of the derivative of the equations at inner nodes with respect to all nodes' coordinates."""
+    """The nonzero entries of the derivative J of equations at inner nodes by the coordinates of all nodes."""
 
     rows: Indices  # (m,) row of each entry: flat index of the equation in (2, ni, nj)
     columns: Indices  # (m,) column of each entry: flat index of the coordinate in (2, ni, nj)
@@ -36,7 +36,7 @@ class Jacobian:
 
 
 def jacobian(equations: Equations, nodes: Floats, reach: int) -> Jacobian:
-    """Return the Jacobian at `nodes` (2, ni, nj); the stencil extends `reach` nodes in each direction."""
+    """Return the Jacobian of `equations` at `nodes` (2, ni, nj); stencils extend `reach` nodes each way."""
     _, ni, nj = nodes.shape
     step, period = STEP * shortest_edges(nodes), 2 * reach + 1
     number = np.arange(nodes.size).reshape(nodes.shape)

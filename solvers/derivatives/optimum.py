@@ -31,12 +31,12 @@ class OptimumDerivative:
     Parameters
     ----------
     grid : a grid near the solution for its own boundary nodes, so that Newton's method converges.
-    method : ``variational`` or ``winslow``, the equations that inner nodes satisfy.
+    method : the equations that inner nodes satisfy, ``variational`` or ``winslow``.
     weights : weights of the functional. None: those in the provenance of `grid`, or the defaults of
         `solve_pde`.
 
-    Raises InputError: the grid is an O grid, a volume, or has several blocks; the method is unknown. Raises
-    SolverError: the grid is far from the solution.
+    Raises InputError if the grid is an O grid, a volume, or has several blocks, or if the method is unknown.
+    Raises SolverError if the grid is far from the solution.
     """
 
     grid: Grid  # the converged solution
@@ -57,9 +57,9 @@ class OptimumDerivative:
         self._by_aspect = self._aspect_term(nodes)
 
     def along(self, moves: Floats) -> Floats:
-        """Return the derivative (ni, nj, 2) of all nodes along `moves` (ni, nj, 2) of the boundary nodes.
+        """Return the derivative (ni, nj, 2) of all nodes in the direction `moves` of the boundary nodes.
 
-        Values of `moves` at inner nodes are ignored.
+        `moves` has the shape (ni, nj, 2); its values at inner nodes are ignored.
         """
         rim = np.array(np.moveaxis(moves, -1, 0), dtype=np.float64, order="C")
         rim[:, 1:-1, 1:-1] = 0.0
@@ -69,7 +69,7 @@ class OptimumDerivative:
         return np.ascontiguousarray(np.moveaxis(rim, 0, -1))
 
     def transposed(self, pull: Floats) -> Floats:
-        """Return the derivative (ni, nj, 2) of a functional with respect to the boundary nodes, zero inside.
+        """Return the derivative (ni, nj, 2) of a functional by the boundary nodes; it is zero at inner nodes.
 
         `pull` (ni, nj, 2) is the derivative of the functional by all nodes as independent variables.
         """

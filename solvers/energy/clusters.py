@@ -13,7 +13,7 @@ from meshonet.geometry.arrays import Floats, as_planar
 
 @dataclass(frozen=True)
 class Window:
-    """The nodes from `first` to `last`, inclusive, along each direction; i may cross the seam of an O grid.
+    """The nodes with indices from `first` to `last`, inclusive; i may cross the seam of an O grid.
 
     >>> Window((-2, 0), (4, 3)).cells
     18
@@ -28,7 +28,7 @@ class Window:
         return int(np.prod(np.subtract(self.last, self.first)))
 
     def rows(self, ni: int, periodic: bool) -> NDArray[np.intp]:
-        """Return the i indices (m,) of the window's nodes among `ni` nodes; modulo ni - 1 if `periodic`."""
+        """Return the i indices (m,) of the window's nodes; they are modulo ni - 1 if `periodic`."""
         rows = np.arange(self.first[0], self.last[0] + 1)
         return rows % (ni - 1) if periodic else rows
 
@@ -38,11 +38,11 @@ class Window:
         return rows, *(slice(low + less, high + 1 - less) for low, high in ends)
 
     def cut(self, nodes: Floats, periodic: bool = False) -> Floats:
-        """Return a copy, in planar layout, of the `nodes` (ni, nj, 2) or (ni, nj, nk, 3) in the window."""
+        """Return a copy of the window's nodes from `nodes` (ni, nj, 2) or (ni, nj, nk, 3)."""
         return as_planar(nodes[self._index(self.rows(len(nodes), periodic), 0)])
 
     def put(self, nodes: Floats, periodic: bool, patch: Floats) -> None:
-        """Set the window's inner nodes in `nodes` to those of `patch`, a changed result of `cut`."""
+        """Replace the window's inner nodes in `nodes` by those of `patch`, a changed result of `cut`."""
         inner = (slice(1, -1),) * len(self.first)
         nodes[self._index(self.rows(len(nodes), periodic)[1:-1], 1)] = patch[inner]
         if periodic:
@@ -52,11 +52,12 @@ class Window:
 def windows(
     bad: NDArray[np.int64], margin: int, shape: tuple[int, ...], periodic: bool, largest: int
 ) -> Iterator[Window]:
-    """Yield windows around the groups of the cells `bad` (n, d), with at least `margin` cells around each.
+    """Yield windows (ranges of nodes) around groups of the cells `bad` (n, d), with `margin` cells around.
 
-    Bad cells form a group if their tiles of `margin` cells touch. A group that needs more than `largest`
-    cells is divided, at most to single tiles. Windows stay inside the nodes of `shape`, (ni, nj) or (ni, nj,
-    nk); if `periodic`, a window may extend across the seam, but not overlap itself.
+    Cells belong to the same group if they lie in adjacent tiles of `margin` cells. A group whose window would
+    have more than `largest` cells is divided, at most to single tiles. Windows stay inside node counts
+    `shape`, (ni, nj) or (ni, nj, nk). If `periodic`, a window may extend across the seam, but not overlap
+    itself.
 
     >>> list(windows(np.array([[20, 0], [22, 1]]), 6, (100, 50), False, 2500))
     [Window(first=(12, 0), last=(30, 12))]

@@ -32,12 +32,12 @@ def descend(
     nodes: Floats, weights: Weights, still: float, most: int, *, periodic: bool = False,
     first: int | None = None, stiffness: tuple[Stiffness, tuple[int, int]] | None = None,
 ) -> tuple[int, bool]:  # fmt: skip
-    """Minimise from planar `nodes` (ni, nj, 2) in place; return the iterations and whether the grid is valid.
+    """Minimise the functional from planar `nodes` (ni, nj, 2), in place; folded cells are repaired first.
 
-    `still`: the `tol` of `variational.solve`; `most`: largest number of iterations; `first`: number of
-    iterations after which the descent continues only for a value above `HARD`; `periodic`: the last row of
-    nodes repeats the first, and both move (around a body); `stiffness`: from `stiffness_of`, preconditions
-    smooth displacements.
+    Returns the number of iterations, and whether no cell is folded. `still` is the `tol` of
+    `variational.solve`. `most` is the greatest number of iterations; after `first` iterations, only a value
+    above `HARD` lets them continue. If `periodic`, the grid is around a body: the last row repeats the first,
+    and both move. `stiffness`, a result of `stiffness_of`, preconditions smooth displacements.
     """
     ni, nj = nodes.shape[:2]
     if min(ni, nj) < 3:
@@ -61,10 +61,10 @@ def descend(
 
 
 def newton(nodes: Floats, weights: Weights, most: int) -> int:
-    """Take up to `most` Newton steps from planar `nodes` (ni, nj, 2) of a quad; return the number of steps.
+    """Take up to `most` Newton steps from planar `nodes` (ni, nj, 2) of a four-sided grid; return how many.
 
-    The iteration ends after a step that lowers the functional by less than `WON`. If folded cells cannot be
-    repaired, no step is taken.
+    The iteration ends after a step that lowers the functional by less than the fraction `WON`. If folded
+    cells cannot be repaired, no step is taken.
     """
     if min(nodes.shape[:2]) < 3 or (count_folded(nodes) and repair(nodes, periodic=False)):
         return 0
@@ -73,7 +73,7 @@ def newton(nodes: Floats, weights: Weights, most: int) -> int:
 
 
 def stiffness_of(nodes: Floats, weights: Weights) -> tuple[Stiffness, tuple[int, int]] | None:
-    """Return the Hessian at coarse planar `nodes`, and the node counts; None if cells are folded."""
+    """Return the Hessian of the functional at `nodes` and the node counts; None if cells are folded."""
     if count_folded(nodes):
         return None
     hessian = Stiffness(np.moveaxis(nodes, -1, 0), aspect_of(nodes), weights.shape, weights.smoothness)
@@ -81,7 +81,7 @@ def stiffness_of(nodes: Floats, weights: Weights) -> tuple[Stiffness, tuple[int,
 
 
 def listener_of(nodes: Floats) -> Callable[[int, float, float], None] | None:
-    """Return a function that calls the listeners with `nodes` (ni, nj, 2); None if there is no listener."""
+    """Return a function that reports each iteration on `nodes` to listeners; None if there are none."""
     if not listened_to():
         return None
     first = 0.0
@@ -95,7 +95,7 @@ def listener_of(nodes: Floats) -> Callable[[int, float, float], None] | None:
 
 
 def in_cells(still: float, nodes: Floats) -> float:
-    """Return the tolerance `still` in units of the cells of planar `nodes` (ni, nj, 2)."""
+    """Return the tolerance `still` for planar `nodes` (ni, nj, 2) as a number of cell sizes."""
     return still * float(np.sqrt((nodes.shape[0] - 1) * (nodes.shape[1] - 1)))
 
 
@@ -108,10 +108,10 @@ def _made_valid(nodes: Floats, weights: Weights, periodic: bool) -> bool:
 
 
 def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floats) -> None:
-    """Repair and minimise planar `nodes` (ni, nj, 2) of an O grid in windows around skewed cells, in place.
+    """Repair and minimise planar `nodes` (ni, nj, 2) of an O grid around skewed cells, in place.
 
-    `nodes` come from splines, which smooth grid lines that leave corners of the wall. `relief` is the result
-    of `relief_of`.
+    Skewed cells result from splines, which smooth grid lines that leave corners of the wall. `relief` is the
+    result of `relief_of`.
     """
     skewed = corner_distortion(nodes)
     poor = np.argwhere(skewed > SKEWED)
@@ -133,7 +133,7 @@ def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floa
 
 
 def corner_distortion(nodes: Floats) -> Floats:
-    """Return, for each cell of `nodes` (ni, nj, 2), the largest 1/sin⁴ of its angles; infinite if folded."""
+    """Return for each cell of `nodes` (ni, nj, 2) the greatest 1/sin⁴ of its angles; infinite if folded."""
     z = nodes[..., 0] + 1j * nodes[..., 1]
     along, across = np.diff(z, axis=0), np.diff(z, axis=1)
     g, h = modulus(along), modulus(across)

@@ -18,16 +18,16 @@ from meshonet.kernels._native import variational_energy
 class Weights:
     """Weights w and β of the functional E.
 
-    With u and v the edges along xi and eta at a corner of a cell, or their means at its centre, g = |u|², h =
-    |v|², J = u × v, a the aspect ratio, and l the lengths of the edges of one family::
+    u and v are the edges along xi and eta at a corner of a cell, or their means at its centre. Then g = |u|²,
+    h = |v|² and J = u × v. a is the aspect ratio, and l are the lengths of the edges of one family::
 
         E = mean over cells of (mean over corners + 2 at the centre) / 3 of
                 (1-w) (a g + h/a) / (2J) + w (g h / J²)²
           + β mean over cells of the squares of (ni-1) Δ_i log l and (nj-1) Δ_j log l, both families
 
-    The first term is the discrete harmonic functional, infinite at J = 0; the second is 1/sin⁴ of the angle;
-    the third, the squared gradient of log l, makes equal cells differ from alternately narrow and wide ones.
-    For folded grids, J is replaced by χ = (J + √(J² + ε²)) / 2 > 0.
+    The first term is the discrete harmonic functional, which is infinite at J = 0. The second is 1/sin⁴ of
+    the angle. The third is the squared gradient of log l; it prevents alternately narrow and wide cells. For
+    folded grids, J is replaced by χ = (J + √(J² + ε²)) / 2 > 0.
     """
 
     shape: float = 0.97  # w, from 0 (harmonic) to 1 (angles only)
@@ -43,14 +43,14 @@ WAKE = Weights(smoothness=3e-5)
 
 
 def value(nodes: Floats, weights: Weights) -> float:
-    """Return E of planar `nodes` (ni, nj, 2) of a quad, dimensionless; infinite for folded grids."""
+    """Return the functional E for planar `nodes` (ni, nj, 2) of a four-sided grid; infinite if folded."""
     z = np.moveaxis(nodes, -1, 0)
     terms = aspect_of(nodes), weights.shape, weights.smoothness, 0.0, False, None
     return variational_energy(z, *terms, np.empty_like(z))[0]
 
 
 def relief_of(wall: Floats) -> Floats:
-    """Return the factors (ni,) of the angle terms of cell corners at the nodes of a closed `wall` (ni, 2).
+    """Return factors (ni,) of the angle terms of cell corners at the nodes of a closed `wall` (ni, 2).
 
     Where the angle of the domain exceeds 320 degrees, as at a trailing edge, the factor is sin⁴ of half the
     angle. The least possible value of the term is then the same as for right angles.
@@ -61,10 +61,10 @@ def relief_of(wall: Floats) -> Floats:
 
 
 def aspect_of(nodes: Floats, periodic: bool = False) -> float:
-    """Return a, the ratio of steps along eta to steps along xi, for `nodes` (ni, nj, 2).
+    """Return the aspect ratio a of the functional: the ratio of steps along eta to steps along xi.
 
-    It is the ratio of the root mean square steps of west and east to those of south and north. With
-    `periodic`, west and east are not boundaries, and a minimises the harmonic term.
+    It is the ratio of root mean square steps, on west and east to those on south and north. If `periodic`,
+    west and east are no boundaries, and a is the ratio that minimises the harmonic term.
     """
     if periodic:
         u, v = np.diff(nodes, axis=0)[:, :-1], np.diff(nodes, axis=1)[:-1]

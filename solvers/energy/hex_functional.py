@@ -10,19 +10,19 @@ from typing import Literal
 
 @dataclass(frozen=True)
 class HexWeights:
-    """Weights of a functional: `shape` q, `smoothness` β, `power` p (1, 2, or 0 for the functional of cubes).
+    """Weights of a functional of hexahedra: `shape` q, `smoothness` β, `power` p (1 or 2; 0 selects cubes).
 
-    With u, v, w the edges at a corner of a cell, each divided by its target length, J = det(u, v, w), and l
-    the lengths of the edges of one family, the functional of angles is::
+    u, v, w are the edges at a corner of a cell, each divided by its target length, and J = det(u, v, w). l
+    are the lengths of the edges of one family. The functional of angles is::
 
         E = mean over the corners of cells of
                 (1-q) (|u × v|² + |v × w|² + |w × u|²) / (3J) + q (|u|² |v|² |w|² / J²)^p
           + β mean of the squares of N^(1/3) Δ_e log l, all three families, along all three directions e
 
-    Inside six faces, target lengths are the mean lengths along each direction; in given blocks they are near
-    the given lengths. The functional of cubes has q = 1 and β = 0. With T the Jacobian matrix of a cell's
-    trilinear map, whose columns are u, v, w divided by one common length, its integrand is the inverse of the
-    mean ratio::
+    Inside six faces, target lengths are the mean lengths along each direction. In given blocks they are near
+    the given lengths. The functional of cubes has q = 1 and β = 0. Its integrand is the inverse of the mean
+    ratio of T, the Jacobian matrix of a cell's trilinear map with columns u, v, w divided by a common
+    length::
 
         E = mean over cells of the integral of |T|² / (3 det(T)^⅔)
 
@@ -37,7 +37,7 @@ class HexWeights:
 
     @property
     def of_cubes(self) -> bool:
-        """Whether edges of all directions are divided by the same length."""
+        """Whether these are the weights of the functional of cubes."""
         return self.power == 0
 
 

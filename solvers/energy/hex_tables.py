@@ -25,7 +25,7 @@ without an edge are arbitrary.
 
 @dataclass(frozen=True, eq=False)
 class HexTables:
-    """Concatenated tables of all blocks."""
+    """Tables of all blocks of a mesh for compiled code."""
 
     blocks: NDArray[np.int64]  # (b, 6) node counts, and starts of positions, cells and rows
     node: NDArray[np.int32]  # (p,) index of the node at each position, -1 for none
@@ -41,9 +41,9 @@ class HexTables:
 def tables_of(
     mesh: HexMesh, moves: Bools, targets: Targets, lengths: Sequence[Floats], turned: bool = True
 ) -> HexTables:
-    """Return arrays for compiled code of a mesh with free nodes `moves` (n,) and target `lengths` of cells.
+    """Return the tables of a mesh for compiled code; `moves` (n,) is the mask of free nodes.
 
-    If `turned`, blocks are stored with their longest direction last.
+    `targets` are for edges, `lengths` for cells. If `turned`, blocks have their longest direction last.
     """
     parts = [
         _part(wider, np.append(moves, False), wanted, sizes, turned)
@@ -78,7 +78,7 @@ def tables_of(
 
 
 def cell_lengths(edges: Sequence[Floats]) -> Floats:
-    """Return the target lengths (3, ni-1, nj-1, nk-1) of cells from the `Targets` of their block."""
+    """Return the target lengths (3, ni-1, nj-1, nk-1) of a block's cells, means of those of their `edges`."""
     means = []
     for d, values in enumerate(edges):
         inner = np.moveaxis(values, d, 0)[1:-1]

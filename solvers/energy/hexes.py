@@ -28,26 +28,26 @@ OPENED = 20, 10, 10  # iterations of each stage of opening
 
 @dataclass(frozen=True, eq=False)
 class Slides:
-    """Nodes that slide: indices (k,), and projections (k, 3, 3) onto the plane or line of each node."""
+    """Nodes that slide in a plane or on a line: indices (k,), and projections (k, 3, 3) onto it."""
 
     nodes: Indices
     projections: Floats
 
     @classmethod
     def none(cls) -> "Slides":
-        """Return the value for a mesh without sliding nodes."""
+        """Return the object for a mesh without sliding nodes."""
         return cls(np.empty(0, dtype=np.intp), np.empty((0, 3, 3)))
 
     def among(self, nodes: Indices) -> "Slides":
-        """Return the sliding nodes among the sorted `nodes` (m,), with their positions in it as indices."""
+        """Return the sliding nodes among the sorted `nodes` (m,); indices are then positions in `nodes`."""
         place = np.minimum(np.searchsorted(nodes, self.nodes), len(nodes) - 1)
         some = nodes[place] == self.nodes
         return Slides(place[some], self.projections[some])
 
     def kept(self, before: Floats, after: Floats, moves: Bools) -> Floats:
-        """Return the nodes `after` (n, 3) a displacement, with sliding nodes moved back to planes and lines.
+        """Return the displaced nodes `after` (n, 3), with sliding nodes moved back to their planes and lines.
 
-        The planes and lines pass through the positions `before` the displacement.
+        These pass through the positions `before`. Nodes outside the mask `moves` are not displaced.
         """
         nodes, at = after.copy(), self.nodes
         nodes[at] = before[at] + (self.projections * (after[at] - before[at])[:, None]).sum(axis=2)
@@ -71,7 +71,7 @@ class HexOptimum:
 
 
 class HexProblem:
-    """Minimisation over a mesh with free nodes `moves` (n,)."""
+    """Minimisation of the functional over the nodes of a mesh in the mask `moves` (n,)."""
 
     def __init__(self, mesh: HexMesh, moves: Bools, targets: Targets, slides: Slides | None = None) -> None:
         self.mesh, self.moves, self.iterations = mesh, moves, 0
@@ -88,7 +88,7 @@ class HexProblem:
     def run(self, weights: HexWeights, most: int, epsilon: float = 0.0) -> tuple[float, float]:
         """Do at most `most` iterations; return the smallest Jacobian and the value of the functional.
 
-        In the functional, Jacobians are regularised by `epsilon`.
+        `epsilon` regularises the Jacobians in the functional.
         """
         size = SIZE if epsilon > 0.0 else 0.0
         self.descent.weigh(weights.shape, weights.smoothness, weights.power, epsilon, size)
@@ -97,12 +97,12 @@ class HexProblem:
         return smallest, value
 
     def smallest(self) -> float:
-        """Return the smallest corner Jacobian, which is 1 for a cell with target lengths."""
+        """Return the smallest corner Jacobian; it is 1 for a cell with target lengths and right angles."""
         self.descent.weigh(UNFOLDING.shape, 0.0, 1, 1.0)
         return self.descent.smallest()
 
     def unfold(self, smallest: float, rounds: int = ROUNDS, iterations: int = ROUND) -> float:
-        """Minimise the regularised functional until all Jacobians are positive; return the smallest one."""
+        """Untangle the mesh by the regularised functional; return the smallest Jacobian."""
         best, idle = smallest, 0
         for count in range(rounds):
             if smallest > 0.0 or idle == WITHOUT_GAIN:
@@ -114,7 +114,7 @@ class HexProblem:
         return smallest
 
     def open(self) -> float:
-        """Open flat cells of a valid mesh; return the smallest Jacobian."""
+        """Open nearly flat cells of a mesh without folded cells; return the smallest Jacobian."""
         smallest = 0.0
         for weights, most in zip((UNFOLDING, *OPENING), OPENED, strict=True):
             smallest = self.run(weights, most)[0]
@@ -129,7 +129,7 @@ def descent_of(
     nodes: Floats, tables: HexTables, inverse_sizes: Floats, cells: int, slides: tuple[Indices, Floats],
     over: tuple[float, float, float] | None = None,
 ) -> HexDescent:  # fmt: skip
-    """Return the compiled minimisation for nodes (n, 3) and their `tables`."""
+    """Return the compiled minimisation over `nodes` (n, 3), from `tables` of their mesh."""
     of_places = tables.node, tables.target, tables.inverse, tables.skip, tables.busy
     places = tables.free, tables.start, tables.place, np.ascontiguousarray(inverse_sizes)
     threads = threads_for(len(nodes), MANY_VISITS)
@@ -152,10 +152,10 @@ def optimise(
     mesh: HexMesh, moves: Bools, targets: Targets, *, slides: Slides | None = None, iterations: int = 60,
     tolerance: float = 1e-5, rounds: int = ROUNDS,
 ) -> HexOptimum:  # fmt: skip
-    """Return the nodes of `mesh`, with free nodes `moves` (n,), that minimise the functional.
+    """Return the nodes of `mesh` at the minimum of the functional; only nodes in the mask `moves` move.
 
-    Folded cells are untangled first, in at most `rounds` rounds. The minimisation then ends after
-    `iterations`, or if two consecutive iterations gain less than `tolerance` times the value. Cells without
+    Folded cells are untangled first, in at most `rounds` rounds. The minimisation ends after `iterations`, or
+    if two consecutive iterations each lower the value by less than the fraction `tolerance`. Cells without
     free nodes are ignored.
     """
     problem = HexProblem(mesh, moves, targets, slides)

@@ -22,8 +22,8 @@ MODES = 512  # modes along a direction that are kept; finer ones are all divided
 class Descent:
     """Minimisation of the functional over planar nodes (ni, nj, 2), in place; boundary nodes are fixed.
 
-    Around a body (`periodic`) the last row is the same as the first, and moves. `aspect` is the ratio a of
-    the functional; None computes it from `nodes`.
+    If `periodic`, the grid is around a body: its last row repeats the first, and moves. `aspect` is the
+    aspect ratio a of the functional; None computes it from `nodes`.
     """
 
     def __init__(
@@ -40,9 +40,9 @@ class Descent:
     ) -> tuple[float, float, int]:  # fmt: skip
         """Minimise; return the value of the functional, the smallest corner Jacobian and the iterations.
 
-        The iteration stops if nodes move by less than `still` cell sizes, or after `most` iterations.
-        `epsilon` is an area that regularises Jacobians, `relief` the result of `relief_of`. `listener` is
-        called with number, value and norm of the gradient, before the first and after each iteration.
+        The iteration ends if nodes move by less than `still` cell sizes, or after `most` iterations.
+        `epsilon` (an area) regularises Jacobians. `relief` is the result of `relief_of`. `listener` gets the
+        number, value and gradient norm before the first and after each iteration.
         """
         return self.minimiser.run(self._z, *self._terms, epsilon, relief, still, REACH_CELLS, most, listener)
 
@@ -50,9 +50,9 @@ class Descent:
 def minimiser(ni: int, nj: int, periodic: bool, aspect: float, weights: Weights) -> VariationalDescent:
     """Return the compiled minimisation for ni x nj nodes; if `periodic`, the last row repeats the first.
 
-    For displacements (p, q) along (xi, eta), square cells of side 1, and w and β of `weights`, the second
-    variation is about (1-w) (‖∇p‖² + ‖∇q‖²) + 4 w (p_η² + q_ξ²) + 2 β (‖∇p_ξ‖² + ‖∇q_η‖²), where ∇ in the
-    last term is in units of the whole square. The coupling p_η q_ξ is omitted.
+    It is preconditioned by the Hessian on square cells of side 1. For displacements (p, q) along (xi, eta)
+    and w and β of `weights`, the second variation is about (1-w) (‖∇p‖² + ‖∇q‖²) + 4 w (p_η² + q_ξ²) + 2 β
+    (‖∇p_ξ‖² + ‖∇q_η‖²). In the last term ∇ is in units of the whole square. The coupling p_η q_ξ is omitted.
     """
     rows, along = _fourier(ni - 1) if periodic else _sines(ni - 1)
     columns, across = _sines(nj - 1)

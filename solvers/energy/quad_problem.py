@@ -24,7 +24,7 @@ WIDE = 160.0  # degrees of a single cell from which on they are
 
 @dataclass(frozen=True, eq=False)
 class Unknowns:
-    """Fixed nodes, and periodic images of other nodes."""
+    """Masks and indices of fixed nodes, and of periodic images of other nodes."""
 
     fixed: Bools
     images: Indices
@@ -33,7 +33,7 @@ class Unknowns:
 
 
 def unknowns_of(mesh: QuadMesh, held: Bools | None) -> Unknowns:
-    """Return the fixed nodes and the periodic images of a mesh; corners and `held` (n,) nodes are fixed."""
+    """Return fixed nodes and periodic images of a mesh; corners and nodes in the mask `held` are fixed."""
     places = mesh.places
     fixed = (places.cells > 0) if held is None else (places.cells > 0) | held
     images = np.flatnonzero((places.partner >= 0) & ~fixed)
@@ -44,13 +44,13 @@ def unknowns_of(mesh: QuadMesh, held: Bools | None) -> Unknowns:
 
 
 def smallest_jacobian(nodes: Floats, quads: Indices, areas: Floats | None = None) -> float:
-    """Return the smallest corner Jacobian of `quads` (m, 4) of `nodes` (n, 2), divided by `areas` (m,)."""
+    """Return the smallest corner Jacobian of cells `quads` (m, 4), divided by their `areas` (m,) if given."""
     least = smallest_jacobians(nodes, quads)
     return float((least if areas is None else least / areas).min(initial=np.inf))
 
 
 class Problem:
-    """The minimisation over a mesh, and the conversion of its result."""
+    """Minimisation of the functional over the nodes of a quadrilateral mesh."""
 
     cell: float  # mean area of a cell in scaled units
     descent: QuadDescent
@@ -76,9 +76,9 @@ class Problem:
         self.descent = self._descent(aspects, targets, turning)
 
     def take(self, mesh: QuadMesh) -> None:
-        """Start again with a mesh that has the same quads and other positions of inner nodes.
+        """Start again with a mesh that has the same cells and other positions of inner nodes.
 
-        All wall nodes must be fixed, and at the same positions as before.
+        All wall nodes must be fixed, at the same positions as before.
         """
         self.mesh = mesh
         self.nodes[:] = (mesh.nodes - self.centre) / self.unit

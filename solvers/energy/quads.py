@@ -39,22 +39,22 @@ def optimise(
     targets: Floats | None = None, tolerance: float = 1e-4, turning: float = ALLOWED,
     weights: tuple[float, float] = SIZED, growth: tuple[float, float] = (0.0, 0.0),
 ) -> QuadOptimum:  # fmt: skip
-    """Return the mesh with all nodes at the minimum of the functional; wall nodes slide along their loops.
+    """Return the mesh with its nodes at the minimum of the functional; wall nodes slide along their walls.
 
-    Periodic partners move together; cells without free nodes are ignored, but must not be folded. The
-    smoothness term is the square of differences of log lengths of edges, along and across grid lines, also
-    across interfaces.
+    Periodic partners move together. Cells without free nodes are ignored, but must not be folded. The
+    smoothness term compares the logarithms of the lengths of neighbouring edges, along and across grid lines,
+    also across block interfaces.
 
     Parameters
     ----------
-    iterations : largest number of iterations, without those of untangling.
-    held : (n,) mask of nodes that stay bitwise where they are, like corners (`Places.cells` > 0).
-    aspects : (m,) target ratios of a quad's sides 1-2 and 0-3 to its sides 0-1 and 3-2.
-    targets : (e,) target lengths of `mesh.edges`, in any unit: only ratios of neighbouring edges matter.
+    iterations : greatest number of iterations, without those of untangling.
+    held : (n,) mask of fixed nodes; corners (`Places.cells` > 0) are fixed anyway.
+    aspects : (m,) target ratios of a cell's sides 1-2 and 0-3 to its sides 0-1 and 3-2.
+    targets : (e,) target lengths of `mesh.edges` in any unit, because only ratios of neighbours matter.
     tolerance : the iteration ends after three consecutive relative gains below a hundredth of this.
     turning : angle in radians by which a wall may turn along one edge without penalty.
     weights : w and β of the functional if there are `targets` or if growth is penalised.
-    growth : weight of the penalty for ratios of consecutive edges, and logarithm of the largest free ratio.
+    growth : weight of a penalty for growth ratios of edges, and logarithm of the greatest ratio without it.
     """
     problem = problem_of(mesh, held, aspects, targets, turning)
     if problem is None:
@@ -67,7 +67,7 @@ def problem_of(
     mesh: QuadMesh, held: Bools | None, aspects: Floats | None = None, targets: Floats | None = None,
     turning: float = ALLOWED,
 ) -> Problem | None:  # fmt: skip
-    """Return the minimisation over the nodes of a mesh (see `optimise`).
+    """Return the minimisation over the nodes of a mesh; parameters as in `optimise`.
 
     Returns None if the fixed wall nodes are not in order along the wall.
     """
@@ -80,9 +80,9 @@ def minimise(
     problem: Problem, iterations: int, tolerance: float, steps: Sequence[tuple[float, float]],
     growth: tuple[float, float],
 ) -> QuadOptimum:  # fmt: skip
-    """Return the mesh of a problem with all nodes at the minimum; see `optimise`.
+    """Return the mesh of `problem` with its nodes at the minimum; other parameters as in `optimise`.
 
-    `steps` has w and β of each functional; the functionals are minimised one after another.
+    `steps` has w and β of several functionals, which are minimised one after another.
     """
     low, done = problem.smallest(), 0
     if low <= 0.0:

@@ -38,16 +38,16 @@ FUTILE = 2.4e7  # nodes times iterations that may be spent on patches which stay
 
 @dataclass
 class UnfoldingBudget:
-    """Remaining budget for untangling that fails, in nodes times iterations."""
+    """Remaining budget for untangling without success, in nodes times iterations."""
 
     left: float = FUTILE
 
 
 def repair(nodes: Floats, periodic: bool, margin: int = MARGIN) -> int:
-    """Untangle planar `nodes` (ni, nj, 2) in place, except boundary nodes; return the folded cells left.
+    """Untangle planar `nodes` (ni, nj, 2) in place; return the number of cells that stay folded.
 
-    If `periodic` (O grids), the last row repeats the first, and both move. The first windows have `margin`
-    cells around the folded cells.
+    Boundary nodes are fixed. If `periodic` (O grids), the last row repeats the first, and both move. Regions
+    of `margin` cells around folded cells are moved first.
     """
     bad = folded_cells(nodes)
     if min(nodes.shape[:2]) < 3 or len(bad) == 0:
@@ -96,7 +96,7 @@ def _smooth_windows(nodes: Floats, periodic: bool, cells: NDArray[np.int64], mar
 
 
 def untangle(patch: Floats, periodic: bool, budget: UnfoldingBudget) -> int:
-    """Untangle and smooth planar `patch` (m, n, 2), in place; return the number of folded cells left."""
+    """Untangle and smooth the planar nodes `patch` (m, n, 2) in place; return how many cells stay folded."""
     if budget.left <= 0 or min(patch.shape[:2]) < 3:
         return count_folded(patch)
     spent, valid, tried = 0, False, patch

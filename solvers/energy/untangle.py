@@ -20,8 +20,8 @@ def unfold(
 ) -> tuple[bool, int]:  # fmt: skip
     """Untangle planar `nodes` (ni, nj, 2) in place; return whether no cell is folded, and the iterations.
 
-    The regularisation ε starts at the area of a cell and decreases with the worst Jacobian, at least by half
-    in each step. `periodic` and `aspect` are those of `Descent`.
+    Jacobians are regularised by ε, which starts at the area of a cell and decreases with the worst Jacobian,
+    at least by half in each step. `periodic` and `aspect` are those of `Descent`.
     """
     descent = Descent(nodes, weights, periodic, aspect)
     cell = _cell_area(nodes)
@@ -44,10 +44,10 @@ LONG = 300  # iterations with each of them
 
 
 def widen(nodes: Floats, weights: Weights) -> None:
-    """Lower the functional of valid planar `nodes` (ni, nj, 2) with nearly folded cells, in place.
+    """Open the nearly folded cells of planar `nodes` (ni, nj, 2) in place; no cell may be folded before.
 
-    First, Jacobians are regularised, which makes the barrier less steep. If cells are folded at the end, or
-    the functional is not lower than before, the nodes are not changed.
+    Regularised Jacobians make the barrier of the functional less steep at first. If cells are folded at the
+    end, or the functional is not lower than before, the nodes are not changed.
     """
     trial = nodes.copy(order="K")
     descent, before = Descent(trial, weights), value(nodes, weights)

@@ -53,17 +53,17 @@ def solve(
 ) -> Solution:  # fmt: skip
     """Minimise the functional of `meshonet.solvers.energy.functional` over the nodes inside `boundary`.
 
-    The nodes of the seam of an O grid are unknowns; a wake of a C grid is fixed. If no initial grid could be
-    untangled, the result is folded and has a note.
+    Nodes on the seam of an O grid move; those on the wake of a C grid are fixed. If no initial grid can be
+    untangled, the result has folded cells and a note.
 
     Parameters
     ----------
-    tol : displacement of the nodes at which the iteration ends, divided by √cells times the mean cell size.
+    tol : displacement of nodes, relative to √cells times the mean cell size, at which the iteration ends.
         None: 1e-4, with at most `FEW` iterations, or `FEW_AROUND` for O grids.
-    max_cycles : largest number of iterations on the finest level.
-    initial : a grid with the same node counts, in place of nested iteration.
+    max_cycles : greatest number of iterations on the finest level.
+    initial : a grid with the same node counts to start from, in place of coarser grids.
 
-    Raises InputError: `initial` has other node counts; `tol` or `max_cycles` is not positive.
+    Raises InputError if `initial` has other node counts, or if `tol` or `max_cycles` is not positive.
     """
     check_settings(boundary, tol, max_cycles, initial)
     weights = weights or WEIGHTS[boundary.topology]

@@ -17,7 +17,7 @@ _SAMPLES = np.linspace(0.0, 1.0, 9)  # places in an interval between which a loo
 
 @dataclass(frozen=True, eq=False)
 class Walls:
-    """The nodes on loops, ordered by loop, and the edges between them in the direction of the loop."""
+    """The nodes on closed boundary curves (loops), and the edges between them, in order along each loop."""
 
     nodes: Indices
     loop: Indices
@@ -26,7 +26,7 @@ class Walls:
     round: Floats  # (e,) value to add to the arc length of the second node: 0 or the length of the loop
 
     def range_of(self, loop: int) -> tuple[int, int, int, int]:
-        """Return the index ranges of a loop: first and end index of its nodes, then those of its edges."""
+        """Return first and end index of a loop's nodes, then first and end index of its edges."""
         of_edge = self.loop[self.edges[:, 0]]
         n = [int(k) for k in np.searchsorted(self.loop, [loop, loop + 1])]
         e = [int(k) for k in np.searchsorted(of_edge, [loop, loop + 1])]
@@ -36,7 +36,7 @@ class Walls:
 def walls_of(mesh: QuadMesh, fixed: Bools, tied: Bools) -> Walls | None:
     """Return the walls of a mesh; nodes that have overtaken others along a wall are moved back.
 
-    `fixed` (n,) is the mask of fixed nodes, `tied` (n,) that of the nodes of periodic sides, which are not
+    `fixed` (n,) is the mask of fixed nodes. `tied` (n,) is the mask of nodes on periodic sides, which are no
     walls. Return None if fixed nodes are not in order.
     """
     places = mesh.places
@@ -114,7 +114,7 @@ def _spread(arc: Floats, chain: Indices, length: float, ends: bool) -> None:
 
 @lru_cache(maxsize=256)
 def turned(loop: Loop) -> Floats:
-    """Return the accumulated absolute turning angle (n + 1,) of a loop, in radians, without corners.
+    """Return the accumulated absolute turning angle (n + 1,) of a closed curve in radians, without corners.
 
     Jumps of the tangent at points that are not corners are spread over both adjacent intervals.
     """

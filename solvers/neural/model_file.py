@@ -37,8 +37,7 @@ KINDS = {kind.text: kind for kind in (STRIP, QUAD, PAPER, VOLUME)}
 def read_model(path: Path) -> tuple[Kind, dict[str, Any], dict[str, NDArray[Any]]]:
     """Return the kind, the header and the arrays of a model file.
 
-    Raises InputError if the file is no safetensors file or no model of this version of meshonet, or if an
-    array is not finite.
+    Raises InputError if the file is no model of this version of meshonet, or if an array is not finite.
     """
     header, arrays = read_tensors(path)
     kind = KINDS.get(str(header.get("kind")))

@@ -20,10 +20,10 @@ _REACH = 0.8
 
 
 def make_aircraft(aircraft: Aircraft, request: AircraftRequest | None = None) -> Result:
-    """Return the grid around an aircraft or its half, with the quality of the grid.
+    """Return the grid around an aircraft or around its half, with the quality of the grid.
 
-    Raises InputError: a wing does not begin in the body, does not leave it, or reaches the far field. Raises
-    NoValidGridError: cells are folded, and the request does not allow that.
+    Raises InputError if a wing does not begin in the body, does not leave it, or reaches the far field.
+    Raises NoValidGridError if cells are folded and the request does not allow that.
     """
     request = request or AircraftRequest()
     seconds: dict[str, float] = {}

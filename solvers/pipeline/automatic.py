@@ -21,7 +21,7 @@ FEWER_NODES = {"winslow": (512, 257), "variational": (257, 129)}
 
 @dataclass(frozen=True)
 class Auto(OneByOne):
-    """A method for each topology."""
+    """Solves by one of three methods; the topology of the boundary selects it."""
 
     quad: Method
     o: Method
@@ -35,10 +35,10 @@ class Auto(OneByOne):
 
 @dataclass(frozen=True)
 class Fewer(Wrapper):
-    """Solves large grids by `method` on fewer nodes; if cells are then folded, on twice as many."""
+    """Solves large grids by `method` on fewer nodes; if cells are then folded, again on twice as many."""
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the solution of a boundary; with an initial grid `start`, all nodes are solved for."""
+        """Return the solution of a boundary; with an initial grid `start`, it is solved on all nodes."""
         above, n = FEWER_NODES.get(self.name, (0, 0))
         if not n or start is not None or max(boundary.ni, boundary.nj) <= above:
             return self.inner(boundary, start)
@@ -53,7 +53,7 @@ class Fewer(Wrapper):
 
 @dataclass(frozen=True)
 class Anew(Wrapper):
-    """`method` without an initial grid, even if there is one."""
+    """Solves by `method` without an initial grid, even if one is given."""
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:  # noqa: ARG002
         """Return the solution of a boundary."""
@@ -62,13 +62,13 @@ class Anew(Wrapper):
 
 @dataclass(frozen=True)
 class AroundWake(OneByOne):
-    """Makes C grids by marching with a default first-cell height, or by the variational method if better."""
+    """Makes C grids by marching, or by the variational method if marching does not suit the boundary."""
 
     note: str = ""  # begins the notes, before the method's name
     name: str = "auto"
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:  # noqa: ARG002
-        """Return the solution of a boundary; marching starts from the wall and ignores an initial grid."""
+        """Return the solution of a boundary; an initial grid is not used."""
         from meshonet.solvers.hyperbolic.default_spacing import march_by_default
 
         solution = march_by_default(boundary) or Fewer(method_named("variational")).solve_one(boundary)
@@ -77,11 +77,11 @@ class AroundWake(OneByOne):
 
 
 def elliptic() -> Auto:
-    """Return the method ``auto``: Winslow's equations, but marching for C grids."""
+    """Return the method ``auto``, which solves Winslow's equations, but marches C grids."""
     winslow = method_named("winslow")
     return Auto(Fewer(winslow), winslow, AroundWake())
 
 
 def fewer_on_quads(method: Method) -> Auto:
-    """Return `method`, on fewer nodes for large four-sided domains."""
+    """Return `method`, which then solves large four-sided domains on fewer nodes."""
     return Auto(Fewer(method), method, method, method.name)

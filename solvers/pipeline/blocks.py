@@ -30,9 +30,9 @@ METHODS = ("best", *SMOOTHERS)
 
 
 def as_blocks(shape: Shape, request: GridRequest) -> DomainShape | None:
-    """Return the domain from which `request` makes blocks, or None if it makes a single block.
+    """Return the domain that `request` divides into blocks, or None if it makes a single-block grid.
 
-    Raises InputError: a shape that is not a domain; options that do not apply to multi-block grids.
+    Raises InputError if the shape to divide is no domain, or if options do not apply to multi-block grids.
     """
     asks = request.asks_for_blocks or (() if has_walls_on_sides(shape, request) else request.names_walls)
     if _check_single(request, asks) or not (asks or getattr(shape, "many", False)):
@@ -45,15 +45,15 @@ def as_blocks(shape: Shape, request: GridRequest) -> DomainShape | None:
 
 
 def smooths(shape: DomainShape, request: GridRequest) -> bool:
-    """Return whether a request smooths the blocks of a given grid instead of making new blocks."""
+    """Return whether a request smooths the blocks of a given grid; otherwise it makes new blocks."""
     new_blocks = request.asks_for_blocks or request.sampling.ni or request.at_walls
     return shape.grid is not None and request.method in SMOOTHERS and not new_blocks
 
 
 def smoothed(grid: Grid, request: GridRequest) -> Solution:
-    """Return a multi-block grid, smoothed; then it is refined and smoothed `request.refine` times.
+    """Smooth a multi-block grid, then refine and smooth it `request.refine` times; return the result.
 
-    Raises InputError: see `smooth`; with refinement, also a connection that covers only a part of a side.
+    Raises InputError as `smooth`, or if a grid to refine has a connection that covers only a part of a side.
     """
     from meshonet.solvers.refinement.refine import refined
     from meshonet.solvers.smoothing.smooth import ITERATIONS, smooth
@@ -68,7 +68,7 @@ def smoothed(grid: Grid, request: GridRequest) -> Solution:
 
 
 def check_asked(request: GridRequest) -> None:
-    """Raise InputError for invalid options of multi-block grids, or for options of single blocks."""
+    """Raise InputError if options of multi-block grids are invalid, or conflict with other options."""
     if not request.asks_for_blocks:  # names of walls alone, maybe of a single block of any counts
         _block_request(request, None)
         return
@@ -77,9 +77,9 @@ def check_asked(request: GridRequest) -> None:
 
 
 def make_layout(shape: Shape, request: GridRequest) -> tuple[Layout, Mapping[str, float]]:
-    """Return the blocks that `request` makes of a shape, and the seconds of each stage.
+    """Divide a shape into blocks; return their layout, and the seconds of each stage.
 
-    Raises InputError: see `as_blocks`. Raises SolverError: the decomposition fails.
+    Raises InputError as `as_blocks`. Raises SolverError if the domain cannot be divided.
     """
     seconds: dict[str, float] = {}
     with stage("load", seconds):
@@ -91,7 +91,7 @@ def make_layout(shape: Shape, request: GridRequest) -> tuple[Layout, Mapping[str
 
 
 def block_request(request: GridRequest) -> BlockRequest:
-    """Return the options of `request` for multi-block grids. Raises InputError: see `BlockRequest`."""
+    """Return the options of `request` for multi-block grids. Raises InputError: as `BlockRequest`."""
     sampling = request.sampling
     if sampling.nj not in (None, sampling.ni):
         problem = f"{sampling.ni} x {sampling.nj} nodes for many blocks"

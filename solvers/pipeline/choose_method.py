@@ -23,7 +23,7 @@ NETWORK_SETTINGS = ("model", "polish", "device", "fallback")
 def method_of(request: OneBlock) -> Method:
     """Return the method that makes the grids of `request`; it does not repair folded cells.
 
-    Raises InputError: settings that the method does not have.
+    Raises InputError if the request has settings that the method does not have.
     """
     base = _base(request)
     method = _at_any_resolution(request, base)
@@ -88,7 +88,7 @@ def _angle(request: OneBlock) -> dict[str, float]:
 
 @dataclass(frozen=True)
 class Best(OneByOne):
-    """Default method by topology: conformal for O grids, variational for quad grids, marching for C grids."""
+    """The default: conformal for O grids, variational for four-sided grids, marching for C grids."""
 
     name: str = "best"
 

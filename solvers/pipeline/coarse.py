@@ -31,9 +31,9 @@ def solve_coarse(
 ) -> Solution:
     """Solve by `solve` on at most n x n nodes; return the grid interpolated to the nodes of `boundary`.
 
-    Residual and cycles are those of the coarse solution. With `smooth`, nodes near kinks of the boundary are
-    relaxed by Winslow's equations. The relaxed nodes are kept if the method is ``winslow``, if the
-    interpolated grid is folded, or if angles improve. Raises InputError: `n` is below 9.
+    Residual and cycles of the solution are those on the few nodes. With `smooth`, nodes near kinks of the
+    boundary are relaxed by Winslow's equations. The relaxed nodes are kept if the method is ``winslow``, if
+    the interpolated grid is folded, or if angles improve. Raises InputError if `n` is below 9.
     """
     check_coarse(n)
     counts = min(n, boundary.ni), min(n, boundary.nj)
@@ -54,7 +54,7 @@ def solve_coarse(
 
 @dataclass(frozen=True)
 class Sequenced(Wrapper):
-    """Solves by `method` on every 2^levels-th node, then with half the step, and so on up to all nodes."""
+    """Solves by `method` on a coarse grid, every 2^levels-th node, then on finer grids up to all nodes."""
 
     levels: int
 
@@ -66,10 +66,10 @@ class Sequenced(Wrapper):
 def solve_refined(
     boundary: Boundary, solve: Callable[..., Solution], levels: int, initial: Grid | None = None
 ) -> Solution:
-    """Solve on every 2^levels-th node of `boundary`, then with half the step, and so on up to all nodes.
+    """Solve on every 2^levels-th node of `boundary`, then repeatedly on twice as many, up to all nodes.
 
-    `solve` has a parameter ``initial``, the initial grid of a level; on the coarsest level it is `initial`.
-    Raises InputError: the counts cannot be halved so often.
+    `solve` has a parameter ``initial``: `initial` on the coarsest level, on others the interpolated grid of
+    the level before. Raises InputError if the counts cannot be halved so often.
     """
     solution = solve(coarser_boundary(boundary, 2**levels), initial=initial)
     seconds, counts = dict(solution.seconds), [_counts(solution)]

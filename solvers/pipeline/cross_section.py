@@ -36,9 +36,9 @@ def section_grid(
 ) -> tuple[Grid, tuple[str, ...]]:
     """Return the planar grid inside a closed curve or domain, and notes; a given grid is returned unchanged.
 
-    A circle gets five blocks, with `around` cells along the circle; a four-sided outline gets one block. A
-    first-cell height applies at all sides, or at the sides that the request names. Raises InputError:
-    parameters that do not suit the shape; see also `make_grid`.
+    A circle gets five blocks, with `around` cells along the circle. A four-sided outline gets one block. A
+    first-cell height applies at all sides, or at those that the request names. Raises InputError if
+    parameters do not suit the shape; see also `make_grid`.
     """
     five_blocks = isinstance(shape, Circle) and not (
         request.cell_size or request.layout or request.walls or request.by_wall
@@ -69,7 +69,7 @@ def section_grid(
 
 
 def extent(shape: Shape | Grid) -> float:
-    """Return the longer side of the bounding box of a section."""
+    """Return the longer side of the bounding box of a cross-section."""
     if isinstance(shape, Grid):
         points = np.concatenate([block.nodes.reshape(-1, 2) for block in shape.blocks])
     elif isinstance(shape, DomainShape):

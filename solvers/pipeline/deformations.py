@@ -15,7 +15,7 @@ _REMEDY = "go part of the way first, or make the grid of the new shape anew"  # 
 
 @dataclass(frozen=True)
 class DeformRequest:
-    """Settings of `meshonet.deform`."""
+    """Options of `meshonet.deform`."""
 
     allow_invalid: bool = False  # return the grid even if cells are folded
     percentiles: bool = False  # compute percentiles of the quality measures too
@@ -25,10 +25,10 @@ class DeformRequest:
 def make_deformed(
     grid: Grid, walls: Mapping[str, NewWall] | NewWall, request: DeformRequest | None = None
 ) -> Result:
-    """Return `grid` deformed to the new walls `walls`, with its quality.
+    """Return `grid`, deformed so that its walls take the new positions `walls`, with its quality.
 
-    Raises InputError: see `meshonet.solvers.deformation.deform.deform`. Raises NoValidGridError: cells are
-    folded, and the request does not allow that.
+    Raises InputError as `meshonet.solvers.deformation.deform.deform`. Raises NoValidGridError if cells are
+    folded and the request does not allow that.
     """
     request = request or DeformRequest()
     with limited_to(request.threads):

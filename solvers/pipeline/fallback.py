@@ -25,13 +25,12 @@ REMEDY = "use more nodes, another topology or corners, or allow an invalid grid"
 def guard(
     solution: Solution, boundary: Boundary, *, allow_invalid: bool = False, margin: int | None = None
 ) -> Solution:
-    """Return `solution` if its grid is valid, otherwise the first valid grid from the following stages.
+    """Return `solution` if its grid has no folded cells, otherwise the first valid grid of these stages.
 
     First, regions of `margin` cells around folded cells are repaired. Then each method of `ORDER` makes a
-    grid, which is repaired too. `boundary` is used if `solution` has no boundary. The field `path` of the
-    result ends with the stages that made the grid, such as ``("winslow", "repair")``. Raises
-    NoValidGridError, with the ten worst cells of the best attempt: all stages leave folded cells, and
-    `allow_invalid` is not set.
+    grid, which is repaired too. The field `path` of the result ends with the stages that made the grid, such
+    as ``("winslow", "repair")``. `boundary` is used if `solution` has none. If all stages leave folded cells,
+    raises NoValidGridError with the ten worst cells; with `allow_invalid`, returns `solution` instead.
     """
     grid, boundary = solution.grid, solution.boundary or boundary
     if count_folded(grid.nodes) == 0:

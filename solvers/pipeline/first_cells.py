@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def heights_of(request: OneBlock, boundary: Boundary) -> Heights:
     """Return the first-cell heights that a request prescribes, in the unit of `boundary`.
 
-    Raises InputError: a wall whose name no side has.
+    Raises InputError if no side may be a wall.
     """
     off: dict[str, Any] = {}
     if request.at_walls and boundary.around_body:
@@ -37,7 +37,7 @@ def heights_of(request: OneBlock, boundary: Boundary) -> Heights:
 
 
 def y_plus_notes(request: OneBlock, boundary: Boundary) -> tuple[str, ...]:
-    """Return a text that explains how the heights follow from y+; empty without y+."""
+    """Return a note that explains how the heights follow from y+; () if the request has no y+."""
     if boundary.around_body:
         return request.height_notes(f"and x/c {request.chord_fraction:g}", in_unit=" chords")
     where = f"on a length of {boundary.chord:.6g}, the extent of south,"
@@ -45,16 +45,16 @@ def y_plus_notes(request: OneBlock, boundary: Boundary) -> tuple[str, ...]:
 
 
 def sides_called(boundary: Boundary, name: str) -> list[Side]:
-    """Return the sides of a four-sided boundary on which there is a patch called `name`."""
+    """Return the sides of a four-sided boundary that have a patch called `name`."""
     return [side for side in SIDES if any(p.name == name for p in boundary.patches if p.side == side)]
 
 
 def wall_sides(boundary: Boundary) -> list[Side]:
     """Return the sides of a four-sided boundary that get layers if the request names no walls.
 
-    South and north get layers unless the names of all patches on the side, such as ``inlet``, exclude walls.
-    West and east get layers if all patches on the side are walls. If no side is left, all sides with a patch
-    that may be a wall get layers. Raises InputError: no side may be a wall.
+    These are south and north, unless all patches on the side have names of other boundaries, such as
+    ``inlet``; and west and east, if all patches on the side are walls. If there are none, all sides with a
+    patch that may be a wall get layers. Raises InputError if no side may be a wall.
     """
     patches = {side: [p for p in boundary.patches if p.side == side] for side in SIDES}
     possible = [side for side in SIDES if any(patch.may_be_wall for patch in patches[side])]
@@ -70,18 +70,18 @@ def wall_sides(boundary: Boundary) -> list[Side]:
 
 
 def along_walls(boundary: Boundary, request: OneBlock) -> bool:
-    """Return whether south or north of a four-sided boundary has layers, so that xi runs along a wall."""
+    """Return whether south or north of a four-sided boundary gets layers, so that xi runs along a wall."""
     names = request.by_wall or request.walls
     sides = [side for name in names for side in sides_called(boundary, name)] or wall_sides(boundary)
     return not {"south", "north"}.isdisjoint(sides)
 
 
 def has_walls_on_sides(shape: Shape, request: GridRequest) -> bool:
-    """Return whether the walls named by a request are whole sides of a four-sided domain of one block.
+    """Return whether the walls that a request names are whole sides of a four-sided domain of one block.
 
     If the request neither asks for one block nor gives both node counts, these walls must also be opposite
-    each other, and the request must not refine. Raises InputError: no wall has a requested name; in one
-    block, the walls on a side have different heights.
+    each other, and the request must not refine. Raises InputError if no wall has a requested name, or if
+    walls on the same side of one block have different heights.
     """
     heights = request.first_cell if request.y_plus is None else request.y_plus
     off = heights if isinstance(heights, Mapping) else dict.fromkeys(request.walls, 0.0)
@@ -103,7 +103,7 @@ def has_walls_on_sides(shape: Shape, request: GridRequest) -> bool:
 
 
 def names_of_sides(shape: Shape) -> list[list[str]]:
-    """Return the names along each of four sides; no names if the shape is not one block by default."""
+    """Return the names along each of the four sides; [] if the shape gets several blocks by default."""
     if isinstance(shape, Boundary):
         return [] if shape.around_body else [[p.name for p in shape.patches if p.side == s] for s in SIDES]
     from meshonet.geometry.shapes.domain_shape import DomainShape, convex_corners, four_sided

@@ -30,7 +30,7 @@ OBLIQUE_DEGREES = 20.0  # beyond which layers that lean are worth a note
 
 @dataclass(frozen=True)
 class Layered(Wrapper):
-    """Solves by `method`, then redistributes nodes to the prescribed first-cell heights."""
+    """Solves by `method`, then redistributes nodes so that first cells have the prescribed heights."""
 
     request: OneBlock  # its heights and layers; options that are of no use are refused
     # settings of ``steger-sorenson``, whose sources turn lines at walls
@@ -44,7 +44,7 @@ class Layered(Wrapper):
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
         """Return the solution of a boundary with the prescribed first-cell heights.
 
-        Raises InputError: heights or settings that do not suit the boundary or the method.
+        Raises InputError if heights or settings do not suit the boundary or the method.
         """
         if boundary.around_body and self.request.sides:
             raise InputError(

@@ -30,11 +30,11 @@ GROWTH = 1.2  # of layers where none is given, as of volumes that are marched
 
 
 def blade_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, ...]]:
-    """Return the volume from the first section of a blade, ``hub``, to the last, ``shroud``, and notes.
+    """Return the volume around a blade from its first section, ``hub``, to its last, ``shroud``, and notes.
 
-    Planar O grids around the sections are marched. Far from the blade they are equal, so that the far field
-    is a cylinder. Raises InputError: node counts that are too small. Raises NoValidGridError: the grid of a
-    section has folded cells.
+    Planar O grids around the sections are marched and joined. Far from the blade they are equal, so that the
+    far field is a cylinder. Raises InputError if node counts are too small. Raises NoValidGridError if the
+    grid of a section has folded cells.
     """
     plan = around(
         request.surface.around, gap=request.surface.base, edge=stack.te_spacing, nose=stack.le_spacing
@@ -64,7 +64,7 @@ def blade_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, 
 
 
 def blade_rows(request: StackRequest) -> int:
-    """Return the number of cells along each line away from a blade."""
+    """Return the number of cells between a blade and its far field."""
     if request.layers:
         return request.layers - 1
     return cells_for_growth(request.height(), request.far_field, request.growth or GROWTH)
@@ -86,10 +86,10 @@ def _alike_far_away(grids: Floats, weight: Floats) -> Floats:
 
 
 def duct_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, ...]]:
-    """Return the volume inside a duct, and notes; ``inlet`` and ``outlet`` are the end sections.
+    """Return the volume inside a duct, and notes; the end sections are called ``inlet`` and ``outlet``.
 
-    It has one block if all sections have four sides, else five. Raises InputError: a section that is an
-    airfoil; node counts that are too small.
+    It has one block if all sections have four sides, otherwise five. Raises InputError if a section is an
+    airfoil, or if node counts are too small.
     """
     for k, section in enumerate(stack.sections):
         if isinstance(section.shape, Airfoil):

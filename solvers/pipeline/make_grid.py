@@ -77,13 +77,13 @@ def make_grid(shape: Shape, request: GridRequest) -> Result:
 def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result | Exception]:
     """Yield the grid of each shape, or the error in which it ended, in the order of the shapes.
 
-    Some methods solve several shapes together. Then a limited number of shapes is read ahead, and grids
-    differ from those of separate calls in the last digits.
+    Some methods solve several shapes together. They then read a limited number of shapes ahead, and their
+    grids differ from those of separate calls in the last digits.
 
     Parameters
     ----------
     shapes : iterable of shape
-        Shapes to sample; each is read when its result is requested.
+        Shapes to sample; they are read while results are requested.
     request : GridRequest
         The options of all grids, made by `grid_request`.
 
@@ -111,9 +111,10 @@ def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result
 def make_grids_of(
     keys: Iterable[K], request: GridRequest, shape_of: Callable[[K], Shape]
 ) -> Iterator[tuple[K, Result | Exception]]:
-    """Yield each of the `keys` together with the grid of its shape, or with the error (see `make_grids`).
+    """Yield each of the `keys` with the grid of its shape, or with the error in which it ended.
 
-    `shape_of` returns the shape of a key. Raises InputError: a setting that the method does not have.
+    `shape_of` returns the shape of a key. Raises InputError if the request has settings that the method does
+    not have. See also `make_grids`.
     """
     method = method_of(request)
     keys = iter(keys)

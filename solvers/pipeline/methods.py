@@ -49,7 +49,7 @@ class OneByOne:
 
 
 class MethodEntry(NamedTuple):
-    """A row of the table `METHODS`: a method whose module is not imported yet."""
+    """An entry of the table `METHODS`: a method whose module is imported when it is used."""
 
     target: str  # ``module:name`` of the function of a boundary, or of the class of the method
     summary: str  # for help and documentation, behind the name
@@ -67,12 +67,12 @@ class MethodEntry(NamedTuple):
 
     @property
     def algebraic(self) -> bool:
-        """Whether the grids of the method are explicit formulas of the boundary."""
+        """Whether an explicit formula of the boundary gives the grids."""
         return self.kind == "algebraic"
 
     @property
     def is_class(self) -> bool:
-        """Whether the target is a class; its name then starts with a capital letter."""
+        """Whether `target` is the name of a class, not of a function."""
         return self.target.partition(":")[2][0].isupper()
 
 

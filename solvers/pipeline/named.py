@@ -25,7 +25,7 @@ def solved(method: Method, boundary: Boundary, start: Grid | None) -> Solution:
 
 @dataclass(frozen=True)
 class Each(OneByOne):
-    """A method that is a function of one boundary. Raises InputError: a setting that it does not have."""
+    """A method that calls a function for each boundary. Raises InputError: a setting the function lacks."""
 
     name: str  # in `METHODS`
     # a function of a boundary, its settings and perhaps ``initial``, a grid to start from; or ``module:name``
@@ -39,22 +39,22 @@ class Each(OneByOne):
 
     @property
     def function(self) -> Callable[..., Solution]:
-        """The function."""
+        """The function that makes the grid of a boundary."""
         return resolve_name(self.target) if isinstance(self.target, str) else self.target
 
     def takes(self, setting: str) -> bool:
-        """Return whether the function has this keyword."""
+        """Return whether the function has a parameter called `setting`."""
         return setting in inspect.signature(self.function).parameters
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the function's solution of a boundary; `start` is used if the function has ``initial``."""
+        """Return the solution of a boundary; `start` is used if the function has a parameter ``initial``."""
         more = {"initial": start} if start is not None and self.takes("initial") else {}
         return self.function(boundary, **self.settings, **more)
 
 
 @dataclass(frozen=True)
 class Wrapper(OneByOne):
-    """Base class of methods that solve by another `method` and take over its name."""
+    """Base class of methods that call another `method` and have its name."""
 
     method: Method
 
@@ -69,7 +69,7 @@ class Wrapper(OneByOne):
 
 
 class UnknownSettingError(InputError):
-    """A setting that a method does not have."""
+    """Error: a method does not have a setting."""
 
     def __init__(self, method: str, setting: str) -> None:
         super().__init__(f"method {method} has no {{{setting}}}", f"leave {{{setting}}} out")
@@ -86,7 +86,7 @@ def _check_settings(name: str, function: Callable[..., Any], settings: Mapping[s
 def method_named(name: str, **settings: Any) -> Method:
     """Return the method with the given name and settings.
 
-    Raises InputError: an unknown method; a setting that the method does not have.
+    Raises InputError if there is no such method, or if it does not have a setting.
 
     >>> method_named("winslow", tol=1e-8).settings
     {'tol': 1e-08}

@@ -19,7 +19,7 @@ def grid_request(method: str = "best", *, res: Counts | None = None, **parameter
     method : str, optional
         Name of the method, as in `GridRequest`.
     res : int or tuple of int, optional
-        Number of nodes along xi, eta and, for volumes, zeta. A single number applies to all directions, or
+        Numbers of nodes along xi, eta and, for volumes, zeta. A single number applies to all directions, but
         only to xi if ``growth`` determines the number of rows.
     **parameters
         Fields of `Sampling` and `GridRequest`, and settings of the method. Settings that are None are
@@ -57,7 +57,7 @@ def grid_request(method: str = "best", *, res: Counts | None = None, **parameter
 
 
 def sampling_of(res: Counts | None, parameters: dict[str, Any]) -> Sampling:
-    """Return the sampling with counts `res`; other fields of `Sampling` are taken out of `parameters`."""
+    """Return the sampling with node counts `res`; its other fields are removed from `parameters`."""
     counts = counted(res, parameters)
     return Sampling(**counts, **{name: parameters.pop(name) for name in SAMPLED if name in parameters})
 

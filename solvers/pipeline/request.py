@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Request(FirstCell):
-    """Options that all kinds of grids use; `GridRequest` explains all fields."""
+    """Options of all kinds of grids; `GridRequest` explains the fields."""
 
     sampling: Sampling = field(default_factory=Sampling)
     method: str = "best"
@@ -32,7 +32,7 @@ class Request(FirstCell):
 
     @property
     def chosen(self) -> tuple[str, ...]:
-        """Names of options, then of settings, whose values differ from the default."""
+        """Names of the options, then of the settings, whose values are not the defaults."""
         names: list[str] = []
         plain = vars(Sampling())
         for name, value in vars(self.sampling).items():
@@ -69,7 +69,7 @@ class OneBlock(Request):
 
     @property
     def sides(self) -> dict[str, float]:
-        """First-cell heights by side; sides without a height of their own are left out."""
+        """First-cell heights that single sides have of their own, by side."""
         heights = self.spacing_south, self.spacing_east, self.spacing_north, self.spacing_west
         if heights == (None,) * 4:
             return {}
@@ -77,7 +77,7 @@ class OneBlock(Request):
 
     @property
     def rows_at_walls(self) -> dict[str, Any]:
-        """Growth limit and number of the rows at walls, as parameters of `march.hyperbolic`."""
+        """Parameters of `march.hyperbolic` that concern the growth and the number of rows at walls."""
         free = self.growth is not None and self.sampling.nj is None
         constant, multiple = self.constant_layers or 1, 2**self.refine
         return {"growth": self.growth, "free_rows": free, "constant": constant, "multiple": multiple}
@@ -93,7 +93,7 @@ class OneBlock(Request):
         return self.method.partition(":")[0] == "operator"
 
     def shape_sampling(self) -> Sampling:
-        """Return the sampling of shapes; with a first-cell height ``auto`` spacing is by curvature."""
+        """Return the sampling of shapes; with first-cell heights, ``auto`` spacing is by curvature."""
         if not self.at_walls or self.algebraic:
             return self.sampling
         spacing = "curvature" if self.sampling.spacing == "auto" else self.sampling.spacing
@@ -126,12 +126,12 @@ class ManyBlocks(Request):
 
     @property
     def asks_for_blocks(self) -> tuple[str, ...]:
-        """Names of the given options that only apply to multi-block grids."""
+        """Names of the given options that apply to multi-block grids only."""
         return tuple(filter(FOR_MANY.__contains__, self.chosen))
 
     @property
     def names_walls(self) -> tuple[str, ...]:
-        """Name of the given option, if any, that selects walls with layers by name."""
+        """The given option that selects walls with layers by name, such as ``walls``; () if there is none."""
         if self.by_wall:
             return ("first_cell" if self.y_plus is None else "y_plus",)
         return ("walls",) if self.walls else ()
@@ -150,7 +150,7 @@ class Volume(Request):
 
     @property
     def of_surface(self) -> bool:
-        """Whether the options require marching from a surface, even if the surface is flat."""
+        """Whether the options require marching from a surface, even if that is flat."""
         return self.method == "hyperbolic" and not (OF_SURFACE | {"far_field"}).isdisjoint(self.chosen)
 
 
@@ -163,44 +163,43 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
     sampling : Sampling, optional
         Numbers of nodes and spacing of the boundary.
     method : str, optional
-        A key of `METHODS`, ``best`` (the default for the topology) or ``auto`` (Winslow's equations). Both
-        march C grids, and grids around bodies with a first-cell height.
+        A key of `METHODS`, ``best`` (the default for the topology) or ``auto`` (Winslow's equations). With
+        ``best`` and ``auto``, C grids are marched; so are grids around bodies with a first-cell height.
     settings : dict, optional
         Settings of the method by name.
     first_cell : float or mapping, optional
-        Height of the first cells, in chords around a body, otherwise in the unit of the domain. For walls see
-        `walls`. In four-sided and multi-block domains, a mapping from names to heights selects the walls with
-        layers.
+        Height of the first cells at the walls in `walls`. The unit is the chord around a body, otherwise that
+        of the domain. In four-sided and multi-block domains, a mapping from names to heights selects walls.
     y_plus : float or mapping, optional
         First-cell height as y+ of a turbulent flat plate, instead of `first_cell`.
     reynolds : float, optional
         Reynolds number for `y_plus`.
     length : float, optional
-        Reference length of the Reynolds number, in the unit of `first_cell`. None: the chord of a body, the
-        extent of the south side of a four-sided domain, the extent of all holes, else of the outer boundary,
-        of a multi-block domain, or 1 for marching from a surface.
+        Reference length of the Reynolds number, in the unit of `first_cell`. None: the chord of a body; the
+        extent of the south side of a four-sided domain; the extent of all holes of a multi-block domain, or
+        of its outer boundary if it has no holes; 1 for marching from a surface.
     chord_fraction : float, optional
         Position along the reference length, from 0 to 1, at which y+ is converted to a height.
     growth : float, optional
-        Largest growth ratio of cells away from the wall; determines the number of rows if `sampling` has
-        none.
+        Greatest growth ratio of cells away from the wall. It determines the number of rows if `sampling`
+        has none.
     constant_layers : int, optional
         Number of rows at the wall that have the height of the first cell.
     spacing_south, spacing_north, spacing_west, spacing_east : float, optional
         First-cell heights at single sides of a four-sided domain.
     slide : bool, optional
         Whether nodes move along the walls south and north, so that grid lines leave them at right angles.
-        None: only with the method ``auto`` or ``best``, a first cell at south or north, and wall nodes that
-        meshonet has placed.
+        None: they move if the method is ``auto`` or ``best``, if south or north has a first-cell height, and
+        if meshonet has placed the nodes of the walls.
     wall_angle : float, optional
         Angle between grid lines and walls in degrees, for ``steger-sorenson``.
     coarse : int or 'auto', optional
-        Largest number of nodes per direction of the solution, which is then interpolated to all nodes.
+        Greatest number of nodes per direction to solve for; the solution is then interpolated to all nodes.
         ``auto``: selected by method and size. None: all nodes.
     refine : int, optional
         Number of refinements after the first solution; each halves all cells and solves again.
     initial : Grid, optional
-        Initial grid.
+        Grid from which the solution starts.
     repair : bool, optional
         Whether a grid with folded cells is repaired, or made again by another method; otherwise it is an
         error. None: True, except for algebraic methods and raw grids of networks.
@@ -218,11 +217,11 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
         Approximate number of cells of a multi-block grid. A grid has several blocks if one of `cells`,
         `cell_size`, `count`, `pitch`, `inlet`, `outlet`, `layout` and `periodic` is given.
     cell_size : float, optional
-        Edge length, instead of `cells`.
+        Edge length of cells, instead of `cells`.
     walls : tuple of str, optional
-        Names of the walls with layers. Empty: in a four-sided domain south, north and sides that are called
-        wall; in a multi-block domain all holes, or, without holes, all sides if one of them has a name such
-        as ``inlet``. Sides with such names have no layers.
+        Names of the walls with layers. If none are given: in a four-sided domain south, north and sides
+        called wall; in a multi-block domain all holes; without holes all sides, if one of them has a name
+        such as ``inlet``. Sides with such names have no layers.
     pitch : tuple of 2 float, optional
         Displacement vector from one blade of a cascade to the next.
     inlet, outlet : float, optional
@@ -238,7 +237,8 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
     symmetry : {'x', 'y', 'z', 'none'}, optional
         Axis normal to the plane of symmetry, which contains the open edges of a surface.
     poles : {'replace', 'refuse'}, optional
-        Treatment of sides of surface patches that are points: a core patch replaces them, or they are errors.
+        Treatment of surface patches with a side that is a point: ``replace`` covers the point by another
+        patch, ``refuse`` raises an error.
     energy : {'angles', 'shape'}, optional
         Functional that is minimised in a volume inside six faces: ``angles`` favours right angles and gradual
         changes of length, ``shape`` cells like cubes. None: ``angles``.

@@ -35,7 +35,7 @@ _REMEDY = "use more {cells}, or a larger {first_cell}"  # where cells fold
 def make_row(row: Row, request: RowRequest | None = None) -> Result:
     """Return the grid of one passage of a blade row, with its quality.
 
-    Raises InputError: parameters that do not suit the row. Raises NoValidGridError: cells are folded, and the
+    Raises InputError if parameters do not suit the row. Raises NoValidGridError if cells are folded and the
     request does not allow that.
     """
     request = request or RowRequest()

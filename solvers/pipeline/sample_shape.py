@@ -35,7 +35,7 @@ _TURNED = "xi runs along the walls with layers, which are the sides south and no
 def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainShape | SpatialShape:
     """Return the boundary of a shape; three-dimensional and multi-block shapes are returned unchanged.
 
-    For a C grid that keeps the blunt base of an airfoil, return the line around the base and its wake.
+    For a C grid that keeps the blunt trailing edge of an airfoil, return the line around it and its wake.
     """
     if isinstance(shape, SpatialShape):
         return shape
@@ -97,10 +97,10 @@ def _check_refined(ni: int, nj: int, halvings: int) -> None:
 
 
 def keeps_base(shape: Shape, request: GridRequest) -> TypeGuard[Airfoil]:
-    """Return whether the request is a marched C grid that keeps the blunt base of an airfoil.
+    """Return whether a request marches a C grid that keeps the blunt base (trailing edge) of an airfoil.
 
-    With a first-cell height, or `te` ``exact``, every base is kept. Otherwise a base is kept if it is not
-    thin, and if no option, such as `refine`, excludes such grids.
+    With a first-cell height, or if `te` is ``exact``, all bases are kept. Otherwise a base is kept if it is
+    not thin, and if no option, such as `refine`, excludes such grids.
     """
     sampling = request.sampling
     if request.method not in MARCHING or sampling.te not in ("auto", "exact"):

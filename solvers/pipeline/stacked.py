@@ -17,9 +17,9 @@ Sections: TypeAlias = "Stack | Row | Aircraft"  # inputs of `meshonet stack`
 
 
 def with_tip(what: Sections, tip: Tip | None, *, surface: bool = False) -> Sections:
-    """Return `what`; the tip of a stack gets the shape `tip`, unless that is None.
+    """Return `what`; if `tip` is given, the tip of the stack has this shape.
 
-    Raises InputError: a tip for a row or an aircraft; `surface` for a row, which has no surface grid.
+    Raises InputError if a row or an aircraft gets a tip, or if `surface` is set for a row.
     """
     if isinstance(what, Stack):
         return what.with_tip(tip)
@@ -31,9 +31,9 @@ def with_tip(what: Sections, tip: Tip | None, *, surface: bool = False) -> Secti
 
 
 def stacked_surface(what: Stack | Aircraft, **parameters: Any) -> tuple[Grid, tuple[str, ...]]:
-    """Return the surface patches of a wing or an aircraft, and notes.
+    """Return the surface patches of a wing, a blade or an aircraft, and notes.
 
-    Parameters are the fields of `StackRequest` or `AircraftRequest`. Raises: see `stack_surface` and
+    `parameters` are fields of `StackRequest` or `AircraftRequest`. Raises the errors of `stack_surface` or
     `make_aircraft`.
     """
     if isinstance(what, Stack):
@@ -52,8 +52,8 @@ def stacked_surface(what: Stack | Aircraft, **parameters: Any) -> tuple[Grid, tu
 def make_stacked(what: Sections, **parameters: Any) -> Result:
     """Return the volume grid of a stack, a row or an aircraft, with its quality.
 
-    Parameters are the fields of `StackRequest`, `RowRequest` or `AircraftRequest`. Raises InputError: a
-    parameter that the request does not have; see also `make_stack`, `make_row` and `make_aircraft`.
+    `parameters` are fields of `StackRequest`, `RowRequest` or `AircraftRequest`. Raises InputError for
+    others, and the errors of `make_stack`, `make_row` or `make_aircraft`.
     """
     if isinstance(what, Stack):
         from meshonet.solvers.pipeline.stacks import make_stack

@@ -34,9 +34,9 @@ _REMEDY = "use more nodes {around}, a larger {first_cell} or a higher {base}"  #
 
 
 def stack_surface(stack: Stack, request: StackRequest | None = None) -> tuple[Grid, tuple[str, ...]]:
-    """Return the surface patches of a wing, and notes.
+    """Return the surface patches of a wing or a blade, and notes.
 
-    Raises InputError: a stack that is not a wing; node counts that are too small.
+    Raises InputError if the stack is a duct, or if node counts are too small.
     """
     if stack.kind == "duct":
         raise InputError("a duct has no surface of its own", "leave {surface} out", parameter="surface")
@@ -47,9 +47,9 @@ def stack_surface(stack: Stack, request: StackRequest | None = None) -> tuple[Gr
 
 
 def make_stack(stack: Stack, request: StackRequest | None = None) -> Result:
-    """Return the volume grid around or inside a stack, with its quality.
+    """Return the volume grid around a wing or a blade, or inside a duct, with its quality.
 
-    Raises InputError: parameters do not suit the stack. Raises NoValidGridError: cells are folded, and the
+    Raises InputError if parameters do not suit the stack. Raises NoValidGridError if cells are folded and the
     request does not allow that.
     """
     request = _with_panels(stack, request)

@@ -25,8 +25,8 @@ def make_sweep(
 ) -> Result:  # fmt: skip
     """Return the volume grid of a cross-section swept along a path or about an axis, with its quality.
 
-    `request` and `around` describe the planar grid of the section (`section_grid`). Raises InputError:
-    parameters, section and path do not suit each other. Raises NoValidGridError: cells are folded, and the
+    `request` and `around` are the options of the section's planar grid (`section_grid`). Raises InputError if
+    parameters, section and path do not suit each other. Raises NoValidGridError if cells are folded and the
     request does not allow that.
     """
     seconds: dict[str, float] = {}

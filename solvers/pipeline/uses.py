@@ -66,9 +66,9 @@ IN_SPACE = OF_SURFACE | _row("energy")  # options that do not apply to planar gr
 
 
 def counted(res: Counts | None, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the fields of `Sampling` for counts `res`.
+    """Return the node counts of a `Sampling` from `res`, by name.
 
-    A single number is the count along xi and eta; along xi only if `options` contain a growth ratio.
+    A single number is the count along xi and eta, but only along xi if `options` have a growth ratio.
     """
     if isinstance(res, int):
         by_growth = options.get("growth") and any(map(options.get, _OFF_WALLS))
@@ -77,7 +77,7 @@ def counted(res: Counts | None, options: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def refuse(options: Iterable[str], way: str) -> None:
-    """Raise InputError for the first of the `options` that does not apply to grids of the kind `way`."""
+    """Raise InputError if one of the `options` does not apply to the kind of grid `way`, a key of `USES`."""
     for name in options:
         if name not in USES[way]:
             raise InputError(f"{{{name}}} is of no use to {way}", f"drop {{{name}}}")

@@ -24,10 +24,10 @@ class _VolumeMethod:
 
 
 def make_volume(shape: SpatialShape, request: Volume) -> Solution:
-    """Return the volume grid that `request` makes of a shape: marched, inside six faces, or smoothed.
+    """Return the volume grid of a shape: marched from a surface, filled inside six faces, or smoothed.
 
-    Raises InputError: parameters and shape do not suit each other, or the shape encloses no volume. Raises
-    NoValidGridError: the grid has folded cells.
+    Raises InputError if parameters and shape do not suit each other, or if the shape encloses no volume.
+    Raises NoValidGridError if the grid has folded cells.
     """
     way = _way(shape, request)
     if request.method not in (*_OPEN, *way.methods):

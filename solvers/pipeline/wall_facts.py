@@ -14,7 +14,7 @@ _SAME = 1e-6  # relative tolerances for equal first cells and for growth above t
 
 
 def wall_facts(grid: Grid) -> tuple[str, ...]:
-    """Return notes on first cells and growth at each wall of a multi-block grid, planar or in space."""
+    """Return notes on first cells and growth ratios at each wall of a multi-block grid."""
     notes = []
     for row in wall_rows(grid, grid.walls(), lines_without_percentiles(grid).by_wall):
         low, high = row.height.min, row.height.max
@@ -25,10 +25,10 @@ def wall_facts(grid: Grid) -> tuple[str, ...]:
 
 
 def growth_note(grid: Grid, limit: float, run: Lines | None = None) -> tuple[str, ...]:
-    """Return a note with the largest growth ratio along all grid lines and its node, if it exceeds `limit`.
+    """Return a note with the greatest growth ratio along grid lines and its node, if it exceeds `limit`.
 
-    If that line does not start at a wall, the note also has the largest ratio along lines that do. `run` are
-    the growth ratios of a multi-block grid; None: they are computed.
+    If that grid line does not start at a wall, the note also has the greatest ratio along lines that do.
+    `run` has the growth ratios of a multi-block grid; None computes them.
     """
     ratios, leaving = _growth(grid, run)
     largest = most_of(ratios.families().values())
@@ -52,7 +52,7 @@ def _place(grid: Grid, largest: Extreme) -> str:
 
 
 def jump_note(grid: Grid, most: float) -> tuple[str, ...]:
-    """Return a note on the largest ratio of neighbouring cells along a wall, if it is above `most`."""
+    """Return a note on the greatest size ratio of neighbouring cells along walls, if it exceeds `most`."""
     note: tuple[str, ...] = ()
     for wall in grid.walls():
         nodes = rows_at(grid, wall, 1)[0]
@@ -77,5 +77,5 @@ def _growth(grid: Grid, run: Lines | None) -> tuple[Growth, Extreme | None]:
 
 
 def lines_without_percentiles(grid: Grid) -> Lines:
-    """Return growth and bend of the lines of a multi-block grid; for volumes without percentiles."""
+    """Return growth ratios and turning angles along the grid lines of a multi-block grid."""
     return solid_lines(grid, percentiles=False) if grid.form == "volume" else lines(grid, vertices(grid))

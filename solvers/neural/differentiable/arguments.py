@@ -12,7 +12,7 @@ from meshonet.geometry.errors import InputError
 def check_sides(least: int, nj: int = 2, **sides: Tensor) -> None:
     """Raise InputError unless `sides`, each a tensor (..., n, 2), can bound a batch of grids.
 
-    Opposite sides follow one another. `least` is the least number of nodes of a side. `nj` is the number of
+    Opposite sides are given in pairs. `least` is the least number of nodes of a side. `nj` is the number of
     nodes from wall to far field of grids around bodies.
     """
     names = list(sides)
@@ -74,7 +74,7 @@ def batched(
     make: Callable[..., Tensor], sides: Sequence[Tensor], nj: int | None = None,
     dtype: torch.dtype = torch.float64, device: str | torch.device | None = None,
 ) -> Tensor:  # fmt: skip
-    """Return the nodes that `make` returns for `sides`, but for any number of batch axes.
+    """Return the nodes that `make` returns for `sides`, for any number of batch axes.
 
     Each of `sides` is a tensor (..., n, 2). `make` takes sides (batch, n, 2) of type `dtype` on `device`, and
     returns nodes (batch, ni, nj, 2). The result (..., ni, nj, 2) has the type and the device of `sides`. For

@@ -47,8 +47,7 @@ class Functional:
     def hessian(self, nodes: Tensor, aspect: Tensor, *, convex: bool = False) -> Stencil:
         """Return the second derivatives of the functional with respect to `nodes`, with `aspect` constant.
 
-        `nodes` (batch, 2, ni, nj) must have no folded cells. With `convex`, return a positive definite
-        approximation.
+        `nodes` (batch, 2, ni, nj) has no folded cells. `convex` returns a positive definite approximation.
         """
         zero = nodes.new_zeros(len(nodes), 2, 2, *nodes.shape[2:])
         offsets = ((0, 0), (0, 1), (0, 2), (1, -1), (1, 0), (1, 1), (2, 0))
@@ -136,7 +135,7 @@ def _positive_part(blocks: Tensor) -> Tensor:
 
 
 def aspect_of(nodes: Tensor) -> Tensor:
-    """Return the mean step between boundary nodes along eta, divided by that along xi, for each grid."""
+    """Return for each grid the mean spacing of boundary nodes along eta, divided by that along xi."""
     walls, sides = nodes[..., :: nodes.shape[3] - 1], nodes[:, :, :: nodes.shape[2] - 1]
     along, across = walls.diff(dim=2).square().mean((1, 2, 3)), sides.diff(dim=3).square().mean((1, 2, 3))
     return torch.sqrt(across / along)

@@ -21,7 +21,7 @@ def transfinite(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Ten
     Parameters
     ----------
     south, north : (..., ni, 2) nodes along xi, from west to east.
-    west, east : (..., nj, 2) nodes along eta, from south to north; their ends lie on south and north.
+    west, east : (..., nj, 2) nodes along eta, from south to north; all sides include the corners.
 
     Raises
     ------

@@ -58,7 +58,7 @@ class Task(nn.Module):
 class Run:
     """A training task and its settings.
 
-    `recipe` has settings that are stored in the model file. A resumed run must repeat these and `identity`.
+    `recipe` is stored in the model file. A resumed run must have the same `recipe` and `identity`.
     """
 
     task: Task
@@ -109,8 +109,8 @@ def fit(
     With `plan.patience` the final weights are those with the least held-out loss. The file `checkpoint` is
     written every `plan.checkpoint_every` epochs. With `resume` training continues from it; then its settings
     must equal `facts`. `report` is called every `plan.log_every` epochs and at the end. Raises InputError if
-    the settings differ, or if patience lacks held-out shapes. Raises SolverError if a loss or weight is not
-    finite, or if memory is too small; the last checkpoint is then kept.
+    settings differ, or if `plan.patience` is set without held-out shapes. Raises SolverError if a loss or
+    weight is not finite, or if memory is too small; the last checkpoint is then kept.
     """
     trained = list(task.parameters())
     optimiser: torch.optim.Optimizer = torch.optim.Adam(trained, plan.rate, fused=True)

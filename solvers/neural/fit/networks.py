@@ -79,8 +79,7 @@ class QuadUNet(NamedParameters, UNet[Tensor]):
     def forward(self, features: Tensor) -> Tensor:
         """Return complex displacements (batch, heads, m, n) for `features` (batch, m, n, FEATURES).
 
-        They are 0 on the boundary. In four-sided domains m equals n. Around bodies m must be divisible by
-        2^(number of levels - 1).
+        They are 0 on the boundary. In four-sided domains m equals n; around bodies 2^(levels - 1) divides m.
         """
         answer = self.through(features.movedim(-1, 1), self.counts)
         rim = torch.tensor(

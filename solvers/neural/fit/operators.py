@@ -33,9 +33,9 @@ class OperatorTask(ModelTask):
 
         loss = interior * mean |error|^2 inside + boundary * mean |error|^2 on the boundary
 
-    The means are over the points of a step. The error is output - (grid - base), where base is the grid to
-    which the model adds its output. If there is a base, both terms are divided by the mean square of grid -
-    base. `held_out` has the shapes on which the loss is monitored; other parameters: `ModelTask`.
+    The means are over the points drawn in a step. The error is output - (grid - base); base is the grid to
+    which the model adds its output. If there is a base, both terms are divided by the mean square of (grid -
+    base). `held_out` has the shapes on which the loss is monitored; other parameters: `ModelTask`.
     """
 
     def __init__(

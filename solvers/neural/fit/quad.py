@@ -51,9 +51,8 @@ class QuadUNetSizes:
 class QuadTask(Task):
     """Training of the U-Net on grids by Winslow's equations and by the variational method.
 
-    `training` and `held_out` are domains with both grids. `sizes` are those of the network. `steps` is the
-    number of steps of the whole run. `weights` of terms of the loss and `initial` weights of the network are
-    by name.
+    `training` and `held_out` are domains with both grids. `steps` is the number of steps of the whole run.
+    `weights` has the weights of the loss terms, `initial` those of the network, both by name.
     """
 
     parts: tuple[str, ...] = tuple(PARTS)

@@ -37,8 +37,7 @@ def train(
     """Train a model, write its file, and return its error measures on held-out shapes.
 
     Raises InputError if there is no such model, if shapes are too few, if the checkpoint has another model,
-    data or settings, or if choices do not suit the model. Raises SolverError as
-    `meshonet.solvers.neural.fit.loop.fit`.
+    data or settings, or if choices do not suit the model. Raises SolverError as `fit.loop.fit`.
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ HELD_OUT = 0
 
 
 class VolumeTask(Task):
-    """Training of one network for each of `volumes`; `points`: numbers per step, inside and on faces."""
+    """Training of a network for each of `volumes`; `points` are drawn per step, inside and on the faces."""
 
     parts = ("winslow", "faces", "weights")
 
@@ -99,7 +99,7 @@ class VolumeTask(Task):
         return VolumeNetwork(name, {**own, **self.fixed})
 
     def figures(self, epoch: int) -> dict[str, Any]:
-        """Return `epoch`, and the errors against those of Winslow's grids that could be solved."""
+        """Return the epoch and, if Winslow's equations can be solved, the errors of the networks' grids."""
         from meshonet.solvers.volumes.winslow import winslow
 
         network, errors, away, folded = self.network(), [], 0.0, 0

@@ -27,9 +27,8 @@ SCALING = (  # filter of the scaling function
 class AlongXi(Architecture):
     """A neural operator from functions of xi to functions of xi, evaluated on nodes of the training grids.
 
-    The input at each xi has x and y of the south and north node, x and y of a few nodes of west and east,
-    which are the same for all xi, and xi. The output at each xi has x and y of all nodes of the grid line
-    along eta.
+    The input at each xi is xi, x and y of the south and north nodes there, and x and y of a few fixed nodes
+    of west and east. The output at each xi is x and y of all nodes on this grid line.
     """
 
     native: ClassVar[bool] = True

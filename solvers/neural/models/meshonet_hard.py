@@ -22,8 +22,8 @@ class MeshONetHard(Architecture):
 
     H is the harmonic extension of the boundary. B is zero on the boundary. s is the root mean square
     difference of the training grids from H. For O grids the lift is periodic in xi. With `modes`, the proper
-    orthogonal decomposition of these differences replaces B trunk, which reduces errors at sharp kinks of the
-    boundary.
+    orthogonal decomposition of these differences replaces the product of B and trunk; this reduces errors at
+    sharp kinks.
     """
 
     base: ClassVar[Literal["none", "harmonic"]] = "harmonic"

@@ -39,8 +39,7 @@ def inside(wall: Complexes) -> complex:
 def slope(p: Any, wall: Any, xp: Any) -> tuple[Any, Any, Any]:
     """Return the gradient g and the second derivatives m and c of the potential of `inside` at the point `p`.
 
-    A displacement v of the point changes g by ``m v + c v̄``; m is real. `wall` (n,) is an array of `xp`,
-    numpy or torch.
+    A displacement v of the point changes g by ``m v + c v̄``; m is real. `wall` (n,) is an array of `xp`.
     """
     x, lengths = _pieces(wall, xp)
     o = p - x

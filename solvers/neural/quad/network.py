@@ -120,9 +120,8 @@ class UNet(Generic[Field]):
 class Network:
     """The U-Net with one set of weights, evaluated by compiled code.
 
-    `weights` and `blocks` are those of `shapes`. `dtype` is the arithmetic, float32 or float64. With
-    `around`, grids are O grids, unrolled to strips that are periodic along xi. Levels have 33, 17, 9 and 5
-    nodes::
+    `weights`, `blocks`: see `shapes`. `dtype` is the arithmetic, float32 or float64. With `around`, grids are
+    O grids, unrolled to strips that are periodic along xi. Levels have 33, 17, 9 and 5 nodes::
 
         h = lift(features)
         h = blocks(h);  h = down(silu(h))          on each level but the coarsest, which has one set of blocks

@@ -25,8 +25,7 @@ def polished(
 ) -> tuple[Floats, list[int]]:
     """Return polished nodes (batch, 2, ni, nj), and the number of steps taken for each grid.
 
-    `boundaries` have equal node counts. `steps` limits the number of steps of Newton's method, descent or
-    multigrid.
+    `boundaries` have equal node counts. `steps` limits the steps of Newton's method, descent or multigrid.
     """
     if topology == "quad":
         coarse = coarse_grids.coarse_grids(coarse_grids.sides_of(boundaries), network, head)

@@ -49,9 +49,8 @@ class StripOperator(Operator):
         """Return modes (batch, 2 MODES + 1, LEVELS) of Winslow's solution minus the harmonic extension.
 
         `wall` and `far` (batch, 2 MODES + 1) are Fourier modes of the strip's two walls. `hand` (batch,), the
-        result of `meshonet.geometry.polygon.mirror.handedness`, makes the grids of mirror images mirror
-        images: -1 computes the mirror image, 0 makes the output symmetric. Modes that Picard steps cannot
-        correct are zero.
+        result of `meshonet.geometry.polygon.mirror.handedness`, gives mirror images mirrored grids: -1
+        computes the mirror image, 0 makes the output symmetric. Modes that Picard steps cannot correct are 0.
         """
         if self.network is None:
             return np.zeros((*wall.shape, LEVELS), complex)

@@ -45,8 +45,8 @@ class VolumeMeshNet:
 class VolumeNetwork:
     """Trained networks N_g, one for each geometry g, which can be evaluated at any number of nodes.
 
-    ``(x, y, z) = centre + size N_g(2 xi - 1, 2 eta - 1, 2 zeta - 1)``. `weights` also has points (count, s,
-    3) of the faces by which a geometry is recognised, centres (count, 3) and sizes (count, 1).
+    ``(x, y, z) = centre + size N_g(2 xi - 1, 2 eta - 1, 2 zeta - 1)``. `weights` also has centres (count, 3),
+    sizes (count, 1), and points (count, s, 3) of the faces by which a geometry is recognised.
     """
 
     name: str
@@ -120,9 +120,8 @@ def _check(header: Mapping[str, Any], arrays: Mapping[str, Floats]) -> None:
 def infer_volume(faces: SixFaces, *, model: str, answer: Answer = "valid") -> Solution:
     """Return the grid inside `faces` by a trained network.
 
-    `answer`: ``raw`` returns the predicted nodes, ``pasted`` replaces their faces by the given ones,
-    ``valid`` also repairs folded cells. Raises InputError if there is no such model, or if it does not know
-    the geometry.
+    `answer`: ``raw`` returns the predicted nodes, ``pasted`` replaces their faces by `faces`, ``valid`` also
+    repairs folded cells. Raises InputError if there is no such model, or if it does not know the geometry.
     """
     network = load_volume(model)
     nodes = network.nodes(faces)
