@@ -41,8 +41,8 @@ _FINE = 129  # number of levels of the table by which lines beyond the tip are m
 def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, float, tuple[str, ...]]:
     """Return the grid of an aircraft or of half an aircraft, the planned growth ratio, and notes.
 
-    Raises InputError: a wing does not begin inside the body or does not leave it; wings are too close to each
-    other.
+    Raises InputError if a wing does not begin inside the body or does not leave it, or if wings are too close
+    to each other.
     """
     sizes = aircraft_dimensions(aircraft, request.height(), request.far_field)
     space = map_around(aircraft.body, sizes.far_field)

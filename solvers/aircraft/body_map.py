@@ -35,8 +35,8 @@ _COARSE = 8  # stride of the lines and levels of the table that are searched for
 class BodyMap:
     """The map from (s, theta, zeta) to the space around a `body`, up to the distance `far`.
 
-    s is 0 at the nose and the body's length at the tail, theta 0 at the keel (bottom) and pi at the crown
-    (top), zeta 0 on the body and 1 in the far field.
+    s is 0 at the nose and the body's length at the tail. theta is 0 at the keel (bottom) and pi at the crown
+    (top). zeta is 0 on the body and 1 in the far field.
     """
 
     def __init__(self, body: Body, far: float) -> None:
@@ -54,14 +54,14 @@ class BodyMap:
         self._arcs = monotone_cubic(turns, body.arcs_near(table[:, 0]), even)[:, None, None]
 
     def points(self, places: Floats) -> Floats:
-        """Return points (..., 3) in space, given as s, theta, zeta in `places` (..., 3)."""
+        """Return the points (..., 3) in space at s, theta, zeta = `places` (..., 3)."""
         s, theta, zeta = np.moveaxis(places, -1, 0)
         x, r = np.moveaxis(self.meridional(s.ravel(), zeta.ravel()).reshape(*s.shape, 2), -1, 0)
         r = np.maximum(r, 0.0)
         return np.stack([x, self.body.y - r * cos(theta), r * sin(theta)], axis=-1)
 
     def meridional(self, s: Floats, zeta: Floats) -> Floats:
-        """Return x and r (n, 2) at `s` (n,) and `zeta` (n,)."""
+        """Return x and the distance from the axis (n, 2) at `s` (n,) and `zeta` (n,)."""
         along, across = s * ((_LINES - 1) / self.body.length), zeta * (_LEVELS - 1)
         at_body = self.body.meridional(self.arcs(s)) - _between(self.table[:, :4], along, np.zeros_like(s))
         away = 1.0 - zeta
@@ -73,18 +73,18 @@ class BodyMap:
         return np.clip(_between(self._arcs, along, np.zeros_like(s))[:, 0], 0.0, self.body.length)
 
     def around(self, places: Floats) -> Floats:
-        """Return the length in space (...) of one radian of theta at the `places` s, theta, zeta (..., 3)."""
+        """Return the length (...) in space of one radian of theta at s, theta, zeta = `places` (..., 3)."""
         points = self.points(places)
         return np.hypot(points[..., 1] - self.body.y, points[..., 2])
 
     def steepness(self, places: Floats) -> Floats:
-        """Return the angle (...) in radians between the z axis and the cross-section at `places` (..., 3)."""
+        """Return the angle (...), in radians, of the cross-section to the z axis at `places` (..., 3)."""
         return np.minimum(places[..., 1], np.pi - places[..., 1])
 
     def places(self, points: Floats, near: Floats | None = None) -> Floats:
         """Return s, theta, zeta (..., 3) of points (..., 3), by Newton's method.
 
-        The iteration starts from `near` (..., 3); None: from the nearest nodes of the table.
+        The iteration starts from `near` (..., 3), by default from the nearest nodes of the table.
         """
         y, z = points[..., 1] - self.body.y, points[..., 2]
         theta = arctan2(z, -y)

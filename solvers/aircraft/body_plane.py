@@ -56,7 +56,7 @@ class LevelPlan:
 
     @property
     def collar_patches(self) -> tuple[int, ...]:
-        """For each wing and fin, the index of its collar, the patch of cells around its section."""
+        """For each wing and fin, the index of the patch that is its collar (the cells around its section)."""
         out, begin = [], 0
         for column in self.columns:
             out += [begin, begin + column.patches - 1][: len(column.collars)]
@@ -72,8 +72,8 @@ def planned(
     Parameters
     ----------
     space : map around the body.
-    holes : sections of wings, by column from nose to tail, by wing in the column, and by level; the first
-        level is the body. A column has one wing, or a wing and the fin above it.
+    holes : sections of wings, indexed by column from nose to tail, by wing in the column, and by level. The
+        first level is the body. A column has one wing, or a wing and the fin above it.
     first, growth : height of first cells, and largest growth ratio.
     """
     plans, levels = zip(*(planned_column(each, first, growth) for each in holes), strict=True)
@@ -180,10 +180,10 @@ class BodyEnd:
 
     @classmethod
     def of(cls, points: Points, sides: Sequence[Side]) -> Self:
-        """Return the end of the grid beside the first or last wing.
+        """Return the end of the grid next to the first or the last wing.
 
-        `sides` are the nodes on the nearer side of the wing's patches, for some levels; the first level is
-        the body. s is measured from the pole, the tip of nose or tail.
+        `sides` are the nodes on the side of the wing's patches that faces this end, for some levels; the
+        first level is the body. s is measured from the pole, the tip of nose or tail.
         """
         nodes, cells = sides[0]
         way, last = min((float(nodes[k, 0]), float(cells[k])) for k in (0, -1))
@@ -205,10 +205,10 @@ class BodyEnd:
         return begin, np.full(len(side), self.step)
 
     def patches(self, points: Points, side: Floats, last: Floats) -> tuple[Floats, Floats]:
-        """Return two patches (., ., 3) up to the `side` (n, 3) of a column: rows, and a core at the pole.
+        """Return two patches (ni, nj, 3) up to the `side` (n, 3) of a column: rows, and a core at the pole.
 
-        `last` (n,) are the lengths in s of the cells at the side. Nodes are s, theta, zeta (`BodyMap`), with
-        s from the pole; `points` maps nodes to space.
+        `last` (n,) are the lengths in s of the cells at the side. Nodes are s, theta, zeta (`BodyMap`), where
+        s is measured from the pole. `points` maps nodes to space.
         """
         begin, first = self._begin(side)
         lines = lines_between(points, begin, side, (first, last), self.cells)

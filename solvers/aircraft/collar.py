@@ -38,7 +38,7 @@ Within: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 
 @dataclass(frozen=True)
 class Rectangle:
-    """The rectangle around the section of a wing, by its limits of s and theta (`BodyMap`)."""
+    """The rectangle around the section of a wing: limits of s and theta (`BodyMap`), as lengths in space."""
 
     front: float
     back: float
@@ -47,10 +47,10 @@ class Rectangle:
 
 
 def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
-    """Return the rectangle, in lengths in space, around a `section` (n, 2) of s and theta.
+    """Return the rectangle around a `section` (n, 2) of s and theta.
 
-    On each side the rectangle covers at most half of the distance from the section to the limits `within`.
-    `scale` (2,) are the lengths in space of a unit of s and of theta.
+    On each side it covers at most half of the distance from the section to the limits `within` of s and
+    theta. `scale` (2,) are the lengths in space of a unit of s and of theta.
     """
     (front, low), (back, high) = (section * scale).min(axis=0), (section * scale).max(axis=0)
     (begin, end), (bottom, top) = (
@@ -64,11 +64,11 @@ def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
 
 
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
-    """Return how many nodes are on the `root` section up to the lines to the corners of the rectangle `box`.
+    """Return how many nodes from its edges, on each side, a section `root` has up to the corners of `box`.
 
-    The first number counts from the middle of the trailing edge, the second from the nose, both on either
-    side. Both are at least `fewest`. They make cells beside a corner similar in length, and normals of the
-    root point directly to the corners.
+    The corners are those at which lines from these nodes end. The first number is counted from the middle of
+    the trailing edge, the second from the nose. Both are at least `fewest`. With them, cells on both sides of
+    a corner have similar lengths, and normals of the root point to the corners.
     """
     normals, half = _normals(root), (len(root) - 1) // 2
     tried = np.arange(fewest, half // 3 + 1)
@@ -89,15 +89,15 @@ def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
 
 
 def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]:
-    """Return the cell lengths on the rear and on the front side of a rectangle, from `corner_nodes`."""
+    """Return the cell lengths on the rear and on the front side of a rectangle, for these `corner_nodes`."""
     edge, nose = corners
     return (box.high - box.low) / (2 * edge), (box.high - box.low) / (2 * nose)
 
 
 def outer_loop(root: Floats, box: Rectangle, corners: tuple[int, int]) -> Floats:
-    """Return the nodes (n, 2) on the rectangle `box` at which lines from a `root` (n, 2) end.
+    """Return the nodes (n, 2) on the rectangle `box` at which lines from a section `root` (n, 2) end.
 
-    The root starts in the middle of the trailing edge and runs to larger theta. `corners`: see
+    The root starts in the middle of the trailing edge and runs to larger theta. `corners` are its
     `corner_nodes`.
     """
     half = (len(root) - 1) // 2
@@ -139,7 +139,7 @@ def collar(
 ) -> tuple[Floats, float]:
     """Return nodes (n, rows + 1, 2) between the closed loops `root` and `outer` (n, 2), and a sine.
 
-    The sine is of the smallest angle between lines across and lines around, before nodes are distributed.
+    It is the sine of the smallest angle between lines across and lines around, before nodes are distributed.
 
     Parameters
     ----------

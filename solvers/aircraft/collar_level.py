@@ -34,7 +34,7 @@ _SINE, _LINES = 0.15, 0.05  # smallest sines: in a collar, and between its lines
 
 @dataclass(frozen=True, eq=False)
 class Hole:
-    """The section of a wing on a level."""
+    """The section of a wing on a level (a surface around the body)."""
 
     section: Floats  # (n, 2) s and theta of its nodes
     scale: Floats  # (2,) length in space of a unit of s, and of theta
@@ -64,7 +64,7 @@ class Hole:
 
 @dataclass(frozen=True, eq=False)
 class CollarPlan:
-    """Numbers of cells of a collar, the same on all levels."""
+    """Numbers of cells of a collar (the cells around a wing's section), the same on all levels."""
 
     # edge, nose: the counts of `corner_nodes`
     edge: int
@@ -80,7 +80,7 @@ class CollarPlan:
 
 
 def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
-    """Return the counts of `corner_nodes`, as means over `holes`."""
+    """Return the numbers of `corner_nodes`, averaged over `holes`."""
     corners = [corner_nodes(hole.plane, hole.box, _CORNER) for hole in holes]
     edge, nose = (round(sum(each) / len(corners)) for each in zip(*corners, strict=True))
     return edge, nose
@@ -89,10 +89,10 @@ def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
 def planned_collar(
     holes: Sequence[Hole], corners: tuple[int, int], first: float, growth: float
 ) -> "tuple[CollarPlan, list[CollarLevel]]":
-    """Return the plan for the collars (cells around sections), and the collars around `holes`.
+    """Return the plan for the collars (cells around sections) of a wing, and the collar around each hole.
 
-    `holes` are sections of a wing from the root on. Above and below collars, there are as few cells as growth
-    permits.
+    `holes` are the sections of the wing from the root on. `corners` are the numbers of `corner_nodes`. Above
+    and below collars, there are as few cells as growth permits.
     """
     edge, nose = corners
     plan = CollarPlan(edge, nose, 4, FEWEST, FEWEST, first)

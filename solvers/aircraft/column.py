@@ -43,14 +43,14 @@ _HALVINGS = 40  # steps of the bisection for the factor of the cells below a fin
 
 @dataclass(frozen=True, eq=False)
 class ColumnPlan:
-    """Numbers of cells of a column, the same on all levels."""
+    """Numbers of cells of a column (from keel to crown, around wing and fin), the same on all levels."""
 
     collars: tuple[CollarPlan, ...]  # plans of the collars of the wing, of the fin, or of both, the fin last
     fin: bool  # whether there is a fin
 
     @property
     def patches(self) -> int:
-        """Number of patches of a level."""
+        """Number of patches of the column on a level."""
         return 4 if len(self.collars) == 2 else 2 if self.fin else 3
 
     @property
@@ -65,7 +65,7 @@ class ColumnPlan:
 
     @property
     def beside(self) -> tuple[int, int]:
-        """Numbers of cells from keel to crown on the front and on the back."""
+        """Numbers of cells on the front and on the back of its collars."""
         shares = [1 if self.fin and each is self.collars[-1] else 2 for each in self.collars]
         before = sum(n * each.nose for n, each in zip(shares, self.collars, strict=True))
         return before, sum(n * each.edge for n, each in zip(shares, self.collars, strict=True))
@@ -73,7 +73,7 @@ class ColumnPlan:
     def with_bands(self, cells: int, low: int | None = None) -> ColumnPlan:
         """Return the plan with `cells` cells above and below the collars around wings, `low` of them below.
 
-        If `low` is None, the ratio of cells above and below is kept.
+        By default, the ratio of cells above and below stays the same.
         """
         first, *others = self.collars
         if self.fin_alone:
@@ -84,14 +84,14 @@ class ColumnPlan:
         return replace(self, collars=(replace(first, low=low, top=top), *fins))
 
     def evened(self, widest: float) -> ColumnPlan:
-        """Return the plan with `widest` in all its collars."""
+        """Return the plan with the given `widest` (field of `CollarPlan`) in all its collars."""
         return replace(self, collars=tuple(replace(each, widest=widest) for each in self.collars))
 
 
 def planned_column(
     holes: Sequence[Sequence[Hole]], first: float, growth: float
 ) -> tuple[ColumnPlan, list[ColumnLevel]]:
-    """Return the plan for a column (keel to crown) around `holes` (by wing and level), and each level's."""
+    """Return the plan of a column around `holes`, given by wing and level, and the column on each level."""
     corners = planned_corners([hole for each in holes for hole in each])
     collars, levels = zip(*(planned_collar(each, corners, first, growth) for each in holes), strict=True)
     plan = ColumnPlan(collars, holes[-1][0].fin)
@@ -105,7 +105,7 @@ def planned_column(
 
 @dataclass(frozen=True, eq=False)
 class ColumnLevel:
-    """A column on one level."""
+    """A column (the patches from keel to crown, around wing and fin) on one level."""
 
     plan: ColumnPlan  # numbers of cells
     levels: tuple[CollarLevel, ...]  # the collars: of the wing, of the fin, or of both, the fin last
@@ -116,7 +116,7 @@ class ColumnLevel:
 
     @classmethod
     def of(cls, plan: ColumnPlan, holes: Sequence[Hole]) -> ColumnLevel:
-        """Return the column around `holes`, that of a fin last."""
+        """Return the column around `holes`; the hole of a fin is the last."""
         levels = (CollarLevel.of(*each) for each in zip(plan.collars, holes, strict=True))
         return cls(plan, tuple(levels))
 
@@ -147,7 +147,7 @@ class ColumnLevel:
         return self.levels[0].low_and_top[0] if self.below is None else self.below
 
     def above(self) -> tuple[float, tuple[float, float]]:
-        """Return the length in space between the collars of wing and fin, and of the cells at both ends."""
+        """Return the distance in space of the collars of wing and fin, and the lengths of cells at both."""
         wing, fin = self.levels
         low, high = self._gap
         rho = 0.5 * float(wing.hole.scale[1] + fin.hole.scale[1])

@@ -14,9 +14,8 @@ _INVERSES = 0.2, 5.0  # range of the reciprocal of the exponent
 def at_height(space: BodyMap, wall: Floats, beside: Floats, first: float) -> Floats:
     """Return the places (..., 3) at the distance `first` from `wall` on lines towards `beside` (..., 3).
 
-    Places are s, theta, zeta of `BodyMap`. The fraction t of the line is found by iteration. Near the wall
-    the distance is proportional to a power of t; its exponent, 1 except at a pointed nose or tail, is
-    estimated from the last two iterates.
+    All places are s, theta, zeta of `BodyMap`; the distance is a length in space. The positions on the lines
+    are found by iteration, also where the distance is a power of the position, as at a pointed nose.
     """
     away, foot = beside - wall, space.points(wall)
     scale = inverse = np.ones(away.shape[:-1])
@@ -33,7 +32,7 @@ def at_height(space: BodyMap, wall: Floats, beside: Floats, first: float) -> Flo
 
 
 def between_walls(walls: tuple[Floats, Floats], beside: Floats, first: float) -> Floats:
-    """Return the points (n, 3) at the distance `first` from both `walls` (n, 3), on the side of `beside`.
+    """Return points (n, 3) at the distance `first` from both `walls` (n, 3), on the side of `beside` (n, 3).
 
     The two points on the walls must be at most twice `first` apart.
     """

@@ -28,7 +28,7 @@ def columns_of(
     A fin above a wing, or close to it along the body, is in the wing's column. `sections` are the sections
     (k, n, 3) of each wing on k levels (surfaces around the body).
 
-    Raises InputError: a fin above two wings.
+    Raises InputError if a fin is above two wings.
     """
     columns = [[k] for k in range(len(wings))]
     along = [_along(space, *pair) for pair in zip(wings, sections, strict=True)]
@@ -56,12 +56,12 @@ Each = TypeVar("Each")
 
 
 def ordered(columns: Sequence[Sequence[int]], values: Sequence[Each]) -> list[Each]:
-    """Return `values`, one per wing by index, in the order of `columns` (groups of wings)."""
+    """Return `values`, given by the index of the wing, in the order of `columns` (groups of wings)."""
     return [values[k] for column in columns for k in column]
 
 
 def grouped(columns: Sequence[Sequence[int]], values: Sequence[Each]) -> list[list[Each]]:
-    """Return `values`, one per wing in the order of `columns` (groups of wings), as a list for each group."""
+    """Return `values`, given in the order of `columns` (groups of wings), as one list for each group."""
     rest = iter(values)
     return [list(islice(rest, len(column))) for column in columns]
 
@@ -95,9 +95,9 @@ def holes_of(
 ) -> tuple[tuple[tuple[Hole, ...], ...], ...]:
     """Return the sections of wings (holes), by column from nose to tail, by wing, and by level.
 
-    `sections` (k, n, 3) are the sections of each wing on these levels.
+    `sections` (k, n, 3) are the nodes around each wing on k levels.
 
-    Raises InputError: a section that meets the plane of symmetry; wings that are too close to each other.
+    Raises InputError if a section meets the plane of symmetry, or if wings are too close to each other.
     """
     for column, members in zip(columns, sections, strict=True):
         for wing, each in zip(column, members, strict=True):

@@ -36,7 +36,7 @@ class LoftedMap(BodyMap):
         self._fading = min(1.0, _FADING / more) if more > 0.0 else 1.0
 
     def points(self, places: Floats) -> Floats:
-        """Return points (..., 3) in space, given as s, theta, zeta in `places` (..., 3)."""
+        """Return the points (..., 3) in space at s, theta, zeta = `places` (..., 3)."""
         s, theta, zeta = np.moveaxis(places, -1, 0).reshape(3, -1)
         x, r = self.meridional(s, zeta).T
         r = np.maximum(r, 0.0)
@@ -74,11 +74,11 @@ class LoftedMap(BodyMap):
         return super().places(lowered)
 
     def around(self, places: Floats) -> Floats:
-        """Return the length in space (...) of one radian of theta at the `places` s, theta, zeta (..., 3)."""
+        """Return the length (...) in space of one radian of theta at s, theta, zeta = `places` (..., 3)."""
         return np.asarray(norms(self._around(places)))
 
     def steepness(self, places: Floats) -> Floats:
-        """Return the angle (...) in radians between the z axis and the cross-section at `places` (..., 3)."""
+        """Return the angle (...), in radians, of the cross-section to the z axis at `places` (..., 3)."""
         around = np.abs(self._around(places))
         return np.asarray(arctan2(around[..., 1], around[..., 2]))
 
@@ -125,8 +125,7 @@ def map_around(body: Body, far: float) -> BodyMap:
 def points_above(space: BodyMap, foot: Floats, first: float) -> Floats:
     """Return the points (n, 3) on normals of the body, at the distance `first` from it.
 
-    `foot` (n, 3) are s, theta, zeta (`BodyMap`) of the feet of the normals. Around a body of revolution,
-    lines of constant s and theta are normal to the body.
+    `foot` (n, 3) are s, theta, zeta (`BodyMap`) of the points on the body where the normals begin.
     """
     if isinstance(space, LoftedMap):
         return np.asarray(space.points(foot) + first * space.normals(foot))

@@ -35,7 +35,7 @@ _ENOUGH = 1.15  # ratio of the number of cells to the requested number from whic
 
 @dataclass(frozen=True, eq=False)
 class AircraftPlan:
-    """A planned grid."""
+    """Plan of a grid: lines of wings, their sections on some levels, and numbers of cells."""
 
     wings: tuple[WingLines, ...]  # lines of each wing, from nose to tail; a fin follows the wing below it
     sections: tuple[Floats, ...]  # (SAMPLES, n, 3) s, theta and zeta around each wing on the key levels
@@ -52,8 +52,8 @@ class AircraftPlan:
     def of(cls, aircraft: Aircraft, request: AircraftRequest, space: BodyMap, around: int) -> Self:
         """Return the plan with `around` nodes around each wing; growth is by default the first of `GROWTHS`.
 
-        Raises InputError: a wing does not begin inside the body or does not leave it; wings are too close to
-        each other; a root is too close to keel or crown.
+        Raises InputError if a wing does not begin inside the body or does not leave it, if wings are too
+        close to each other, or if a root is too close to keel or crown.
         """
         chord = aircraft.wing.chord
         first, growth = request.height() * chord, request.growth or GROWTHS[0]
@@ -109,7 +109,7 @@ def plan_of(
 ) -> tuple[AircraftPlan, tuple[str, ...]]:
     """Return the plan with the requested number of cells, or of nodes around wings, and notes.
 
-    Raises InputError: as `AircraftPlan.of`.
+    Raises InputError as `AircraftPlan.of`.
     """
     if request.cells is None:
         plan = AircraftPlan.of(aircraft, request, space, request.surface.around)

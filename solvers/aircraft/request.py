@@ -12,7 +12,7 @@ _OTHERS = ("layers", "revolve", "axis", "copies")  # options of stacks that do n
 
 @dataclass(frozen=True)
 class AircraftRequest(StackRequest):
-    """Options of the grid of an aircraft: those of `StackRequest`. `cells` may replace `around`."""
+    """Options of the grid of an aircraft: those of `StackRequest`; `cells` is given instead of `around`."""
 
     what: ClassVar[str] = "an aircraft"
     fewest_cells: ClassVar[int] = 20_000
@@ -21,7 +21,7 @@ class AircraftRequest(StackRequest):
     def of(cls, **parameters: Any) -> Self:
         """Return a request with the parameters as its fields.
 
-        Raises InputError: as `StackRequest`; a parameter of other stacks; both `cells` and `around`.
+        Raises InputError as `StackRequest`, for options that do not apply, and for both `cells` and `around`.
         """
         refuse_given(cls.what, {name: name in parameters for name in _OTHERS})
         if "cells" in parameters and "around" in parameters:

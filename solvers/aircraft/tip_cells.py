@@ -15,10 +15,10 @@ _STILL = 1e-13  # change of the logarithm of the growth ratio below which the it
 
 
 def arcs_beyond(lengths: Floats, first: Floats, cells: int) -> Floats:
-    """Return arc lengths (n, cells + 1) of nodes on lines of `lengths` (n,) from the tip on.
+    """Return arc lengths (n, cells + 1) of nodes on lines of `lengths` (n,), from the tip on.
 
-    Sizes of cells are (h^4 + c)^(1/4), where h grows by a constant ratio from the least of `first` (n,). The
-    constant c of a line makes its first cell equal to `first`.
+    The first cells are `first` (n,). Sizes of cells are (h^4 + c)^(1/4), where h grows by a constant ratio
+    from the least of `first`; c is a constant for each line.
     """
     least = float(first.min())
     more = (np.square(np.square(first / least)) - 1.0)[:, None]
@@ -40,8 +40,8 @@ def arcs_beyond(lengths: Floats, first: Floats, cells: int) -> Floats:
 def last_cells(points: Floats, section: Indices, even: Floats, first: float, growth: float) -> Floats:
     """Return the heights (p,) of cells at the level of the wing tip, on lines through `points` (p, 3).
 
-    Heights are `first` on the lines `section`, which reach the wing. With the distance from the wing they
-    rise, to between `first` and `even` (p,).
+    On the lines with indices `section`, which reach the wing, heights are `first`. They increase with the
+    distance from the wing, to between `first` and `even` (p,).
     """
     wing = points[section]
     away = np.array([norms(wing - point).min() for point in points])

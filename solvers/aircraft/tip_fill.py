@@ -15,8 +15,8 @@ _MOST_ROWS = 200
 def tip_patches(loop: Floats, first: float) -> tuple[Floats, Floats]:
     """Return the ring (n, rows + 1, 3) and the core (m, k, 3) that fill a closed `loop` (n, 3).
 
-    The loop starts at the trailing edge along the upper side. Outermost cells are `first` long, or shorter
-    where the section is too thin.
+    The loop starts at the trailing edge and runs along the upper side first. Outermost cells are `first`
+    long, or shorter where the section is too thin.
     """
     ring, core = Cap(bulge=0.0).patches(loop)
     edge, inner = ring[:, 0], ring[:, -1]
@@ -33,7 +33,7 @@ def tip_patches(loop: Floats, first: float) -> tuple[Floats, Floats]:
 
 
 def canted_tip_patches(loop: Floats, first: float, cant: float) -> tuple[Floats, Floats]:
-    """Return the patches inside a `loop` in a plane rotated about x by `cant` radians (see `tip_patches`)."""
+    """Return the patches of `tip_patches` in a `loop` whose plane is rotated about x by `cant` radians."""
     if not cant:
         return tip_patches(loop, first)
     place, cants = loop[0, 1:], np.array([-cant, cant])

@@ -20,7 +20,7 @@ _OBLIQUE = 0.4  # largest cosine between the level and the mean direction of lin
 
 
 def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: float) -> Floats:
-    """Return `points` (k, p, 3) of p lines, moved so that lines leave the body, at k = 0, along normals.
+    """Return `points` (k, p, 3) of p lines, moved so that lines leave the body (k = 0) along normals.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: fl
 def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Floats:
     """Return `points` (k, p, 3), moved so that lines of cells around a wing are normal to the span.
 
-    `ring` (n, m) are the indices of the lines around the wing; first cells are `first` high.
+    `ring` (n, m) are the indices of the lines around the wing. First cells are `first` high.
     """
     lines = np.moveaxis(points[:, ring], 2, 0)  # (m, k, n, 3), from the wing outwards
     wall, away = lines[0], (lines[1] - lines[0]) / first
@@ -109,10 +109,9 @@ def _chord(edge: Floats, wing: WingLines) -> float:
 
 
 def off_tip(points: Floats, cap: Indices, ring: Indices, wing: WingLines) -> Floats:
-    """Return `points` (k, p, 3) of lines beyond a tip, moved so that lines leave the tip along normals.
+    """Return `points` (k, p, 3) beyond a tip, moved so that lines leave the tip (k = 0) along normals.
 
-    The tip is at k = 0. `cap` (c,) are indices of lines on the tip, `ring` (n, m) of lines around the tip,
-    which turn less.
+    `cap` (c,) are indices of the lines on the tip, `ring` (n, m) of the lines around it, which turn less.
     """
     apart = arc_lengths(points[0, ring])
     fade = 1.0 - apart / apart[:, -1:]

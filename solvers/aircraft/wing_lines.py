@@ -65,7 +65,8 @@ class WingLines:
     ) -> Self:
         """Return `nodes` lines along the span of a wing; sharp trailing edges are opened to `base` chords.
 
-        Raises InputError: too few nodes; a wing that does not begin inside the body or does not leave it.
+        Raises InputError for too few nodes, or if the wing does not begin inside the body, or never leaves
+        it.
         """
         if isinstance(wing, SurfaceWing):
             least = _SHARP if base is None else base
@@ -85,7 +86,7 @@ class WingLines:
         return np.stack([self.loft.line(k, z[:, k]) for k in range(z.shape[1])], axis=1)
 
     def with_first(self, parts: Floats, first: float) -> Floats:
-        """Return `parts` (k, n); the second row is changed to points at distance `first` from the root."""
+        """Return `parts` (k, n) with its second row changed, to points at distance `first` from the root."""
         parts = parts.copy()
         for _ in range(_ROUNDS):
             root, second = self.points(parts[:2])

@@ -27,7 +27,7 @@ class EdgeNodes:
     points: Floats
 
     def along(self, use: EdgeUse) -> tuple[Floats, Floats]:
-        """Return coordinates (n, 2) on a face and positions (n, 3), in the direction of the face's loop."""
+        """Return coordinates (n, 2) on a face, and positions (n, 3), of the nodes in its loop's direction."""
         places = use.trace(self.parts)
         return (places, self.points) if use.forward else (places[::-1], self.points[::-1])
 
@@ -41,11 +41,11 @@ class EdgeLaw:
 
     @property
     def total(self) -> float:
-        """Number of cells of the distribution, in general not an integer."""
+        """Number of cells of the distribution; in general, it is not an integer."""
         return float(self.cells[-1])
 
     def nodes(self, model: CadModel, edge: CadEdge, count: int) -> EdgeNodes:
-        """Return the nodes of `count` cells."""
+        """Return the nodes of an edge that is divided into `count` cells."""
         part = np.arange(count + 1) / count
         if edge.points is None:
             return EdgeNodes(part, np.repeat(model.vertices[edge.ends[0]][None], count + 1, axis=0))
@@ -62,7 +62,7 @@ def edge_laws(model: CadModel, size: float, spacing: str) -> list[EdgeLaw]:
     smaller where edges bend, and next to short edges. An edge that is a single point (a pole) gets the
     distribution of the line through the middle of its face.
 
-    Raises InputError: `spacing` is none of these.
+    Raises InputError if `spacing` is none of these.
     """
     curves = [edge.points for edge in model.edges]
     for face in model.faces:
@@ -130,7 +130,7 @@ def _by_turning(points: Floats, arcs: Floats) -> Floats:
 
 
 def corner_turns(model: CadModel, uses: tuple[EdgeUse, ...]) -> Floats:
-    """Return the turns (k,) in degrees of a loop where edges begin; 180 beside an edge that is a point."""
+    """Return by how many degrees (k,) a loop turns where edges begin; 180 beside an edge that is a point."""
     ends = np.array([0.0, 1e-4, 1.0 - 1e-4, 1.0])
     starts, stops, poles = [], [], []
     for use in uses:
@@ -146,5 +146,5 @@ def corner_turns(model: CadModel, uses: tuple[EdgeUse, ...]) -> Floats:
 
 
 def place_on(points: Floats) -> str:
-    """Return the mean of points (n, 3) as text."""
+    """Return the mean position of points (n, 3) as text."""
     return place_of(product(np.full(len(points), 1.0 / len(points)), points))

@@ -58,8 +58,8 @@ def patches_on(model: CadModel, sampling: Sampling) -> Solution:
     Two fields of `sampling` apply: `ni` is the number of cells along the longest extent (None: 40), and
     `spacing` is as in `edge_laws`.
 
-    Raises InputError: a face cannot become patches (with its number, sides and place); cells are folded;
-    other fields of `sampling` are set.
+    Raises InputError, with number and place of the face, if a face cannot become patches, or if cells are
+    folded. Raises InputError if other fields of `sampling` are set.
     """
     _check_sampling(sampling)
     plans = _planned(model)

@@ -25,10 +25,10 @@ def axis_heights(
 ) -> tuple[Floats, tuple[str, ...]]:
     """Return z (n,) of nodes along the axis, and notes; each height in `sections` is the z of a node.
 
-    `nodes`: number of nodes; None: 49, or more if sections are uneven. `panels`: number of cells between each
-    two sections, or None.
+    `nodes` is the number of nodes, by default 49, or more if sections are uneven. `panels` has the number of
+    cells between each section and the next, or None if it is free.
 
-    Raises InputError: see `span_heights`.
+    Raises InputError as `span_heights`.
     """
     enough = nodes or max(DEFAULT_SPAN, len(sections))
     heights = span_heights(sections, enough, None, panels)

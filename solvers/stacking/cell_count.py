@@ -20,7 +20,7 @@ def with_counts(
 
     Lines away from the wall have `rows` cells. Node counts that the request sets are kept.
 
-    Raises InputError: cells, nodes around and nodes along the span are all given.
+    Raises InputError if cells, nodes around and nodes along the span are all given.
     """
     if request.around is not None and request.span is not None:
         raise InputError("{cells}, {around} and {span} say how fine the grid is", "give two of them at most")

@@ -91,7 +91,7 @@ class StackRequest(VolumeRequest):
 
     @property
     def turn(self) -> Revolution | None:
-        """The revolution that replaces z, if any."""
+        """The revolution that bends the z axis, if any."""
         return revolution(self.revolve, None, self.axis)
 
     @property

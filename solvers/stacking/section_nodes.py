@@ -30,7 +30,7 @@ LEAST_AROUND, MOST_AROUND = 33, 10_001  # nodes
 
 @dataclass(frozen=True)
 class Around:
-    """Distribution of nodes around every section."""
+    """Distribution of nodes around sections, the same for every section."""
 
     follows_nose: ClassVar[bool] = True
     cells: int  # number of cells on each side
@@ -47,15 +47,15 @@ class Around:
     def law(self, height: float, length: float, nose: float | None = None) -> Callable[[Floats], Floats]:
         """Return the node distribution from base to nose on a side; `length` and base `height` are in chords.
 
-        Raises InputError: cell lengths that are impossible with this number of nodes.
+        Raises InputError if the cell lengths are impossible with this number of nodes.
         """
         return TanhLaw.fitted(self.cells, *self.ends(height, length, nose))
 
     def ends(self, height: float, length: float, nose: float | None = None) -> tuple[float, float]:
         """Return the lengths of the cells next to the base and at the nose, relative to the side's length.
 
-        `height` of the base, `length` of the side and `nose` are in chords. `nose` is the length of nose
-        cells if the field `nose` is None; if both are None, it is 0.35 mean cells.
+        The `height` of the base, the `length` of the side and `nose` are in chords. `nose` is the length of
+        nose cells if the field `nose` is None; if both are None, it is 0.35 mean cells.
         """
         edge = min(_EDGE_CELL * max(height, self.gap) / self.base, 1.0 / self.cells)
         first = edge if self.edge is None else self.edge / length
@@ -71,7 +71,7 @@ def around(
 
     Other parameters are the fields of `Around`.
 
-    Raises InputError: too few nodes, or an even number.
+    Raises InputError if nodes are too few or even in number, or if `gap` is out of its range.
     """
     if not LEAST_AROUND <= nodes <= MOST_AROUND or nodes % 2 == 0:
         problem = f"{nodes} nodes around a section"
@@ -85,7 +85,7 @@ def around(
 def unit_nodes(section: Section, plan: Around) -> tuple[Floats, str]:
     """Return nodes (n, 2) around a section of unit chord, upper side first, and a note on changes.
 
-    Raises InputError: the outline through the nodes intersects itself.
+    Raises InputError if the outline through the nodes intersects itself.
     """
     shape, note = section.shape, ""
     name = shape.name or "a section"

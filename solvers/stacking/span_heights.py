@@ -20,10 +20,10 @@ def span_heights(
 ) -> Floats:
     """Return z (nodes,) of nodes along the span; each height in `sections` is the z of a node.
 
-    Cells decrease towards the tip to the length `last`; None: cells are nearly equal. `panels`: number of
-    cells between each two sections, or None; the panels with None share the remaining cells.
+    Cells decrease towards the tip to the length `last`; if it is None, they are nearly equal. `panels` has
+    the number of cells between each section and the next; panels with None share the remaining cells.
 
-    Raises InputError: more sections than nodes; numbers of cells that do not fit.
+    Raises InputError if there are more sections than nodes, or if numbers of cells do not fit.
     """
     cells, span = nodes - 1, float(sections[-1] - sections[0])
     q = np.linspace(0.0, 1.0, nodes)
@@ -55,14 +55,14 @@ def _moved(cells: list[int], source: int, target: int) -> list[int]:
 
 
 def growth_at(heights: Floats) -> Floats:
-    """Return the ratio (n - 2,), at least 1, of the two cells at each inner node of `heights` (n,)."""
+    """Return the ratio (n - 2,), 1 or more, of the two cells at each inner node of `heights` (n,)."""
     steps = np.diff(heights)
     ratio = steps[1:] / steps[:-1]
     return np.maximum(ratio, 1.0 / ratio)
 
 
 def largest_growth(heights: Floats) -> float:
-    """Return the largest ratio of neighbouring cells."""
+    """Return the largest ratio of neighbouring cells between nodes at `heights` (n,)."""
     return float(growth_at(heights).max())
 
 
@@ -83,7 +83,7 @@ def _cells(own: Indices, panels: Sequence[int | None], free: Sequence[int]) -> l
 
 
 def by_panel(sections: Floats, cells: Sequence[int], last: float | None) -> Floats:
-    """Return heights with `cells` cells between sections; cell lengths change smoothly at sections."""
+    """Return heights of nodes, with `cells` (panels,) between sections; cell lengths change smoothly."""
     lengths = np.diff(sections)
     means = lengths / np.array(cells)
     ends = np.concatenate([means[:1], np.sqrt(means[1:] * means[:-1]), means[-1:]])

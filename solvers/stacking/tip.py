@@ -39,14 +39,14 @@ class Cap:
     bulge: float = 1.0  # height of the cap in local half thicknesses; 0 is flat
 
     def cells(self, nodes: int) -> int:
-        """Return the number of cells, for `nodes` nodes around a section with the repeated first node."""
+        """Return the number of cells for `nodes` nodes around a section, with the repeated first node."""
         return (nodes - 1) * self.rows + (nodes // 2 - 2 * self.short) * 2 * self.short
 
     def patches(self, loop: Floats) -> tuple[Floats, Floats]:
         """Return nodes of the ring (n, rows + 1, 3) and of the core (n // 2 - 2 short + 1, 2 short + 1, 3).
 
-        The closed `loop` (n, 3) is in a plane of constant z and runs from the trailing edge along the upper
-        side first. Normals of both patches point to +z, where the cap is.
+        The closed `loop` (n, 3) is in a plane of constant z. It starts at the trailing edge and runs along
+        the upper side first. Normals of both patches point to +z, where the cap is.
         """
         made = {(1.0, 1.0): self._placed(loop, 1.0, 1.0)}
         best = 1.0, 1.0
@@ -152,7 +152,7 @@ class Cap:
     def connections(self, n: int, ring: int, core: int) -> tuple[Connection, ...]:
         """Return the connections of the ring, with `n` nodes around, to itself and to the core.
 
-        `ring` and `core` are the indices of the blocks.
+        `ring` and `core` are the indices of their blocks.
         """
         m, half = self.short, (n - 1) // 2
         whole = ((0, self.rows),)
@@ -194,7 +194,7 @@ def _shifted(places: Floats, first: float, cell: float) -> Floats:
 
 
 def least_sine(nodes: Floats) -> float:
-    """Return the smallest sine between neighbouring edges of cells of a patch (n, m, 3)."""
+    """Return the smallest sine of an angle of the cells of a patch (n, m, 3), negative if they face -z."""
     least = 1.0
     along, across = np.diff(nodes, axis=0), np.diff(nodes, axis=1)
     for a in (along[:, :-1], along[:, 1:]):

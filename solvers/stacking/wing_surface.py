@@ -46,7 +46,7 @@ def wing_surface(stack: Stack, settings: WingSurface | None = None) -> tuple[Gri
     The first block goes around the sections, upper side first, and along the span. A round or flat tip adds
     ring and core of its cap. The edge at the root is the patch ``symmetry``.
 
-    Raises InputError: node counts that are too small; sections whose outlines intersect themselves.
+    Raises InputError if node counts are too small, or if outlines of sections intersect themselves.
     """
     settings = settings or WingSurface()
     plan = around(settings.around, gap=settings.base, edge=stack.te_spacing, nose=stack.le_spacing)
@@ -74,7 +74,7 @@ def wing_surface(stack: Stack, settings: WingSurface | None = None) -> tuple[Gri
 
 
 def refuse_crossing(stack: Stack, unit: Floats) -> None:
-    """Raise InputError if canted neighbours cross; `unit`: nodes (sections, n, 2) at unit chord."""
+    """Raise InputError if canted neighbours cross; `unit` are nodes (sections, n, 2) at unit chord."""
     cants = stack.cants
     if not cants.any():
         return
@@ -90,7 +90,7 @@ def refuse_crossing(stack: Stack, unit: Floats) -> None:
 
 
 def cap_of(stack: Stack) -> Cap | None:
-    """Return the cap of the tip of a wing, None for an open tip."""
+    """Return the cap of the tip of a wing; None for an open tip."""
     return None if stack.tip == "open" else Cap(BASE_CELLS // 2, bulge=1.0 if stack.tip == "round" else 0.0)
 
 

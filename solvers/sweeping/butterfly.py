@@ -30,7 +30,7 @@ Sides: TypeAlias = Sequence[Floats]
 
 
 class FiveBlocks(NamedTuple):
-    """Core and ring inside closed curves: relative size of the core, rows, alignment with radii, 0 to 1."""
+    """Division of the inside of curves: relative size of the core, rows of the ring, alignment with radii."""
 
     core: float
     rows: int
@@ -39,13 +39,13 @@ class FiveBlocks(NamedTuple):
 
 @dataclass(frozen=True)
 class CrossSection:
-    """A closed curve whose inside is divided."""
+    """A closed curve whose inside is divided into a core and a ring of four blocks."""
 
     arcs: Sides  # nodes on four sides that meet at corners of blocks
     first: float | None = None  # first-cell height at the wall; None: about that of the core's cells
 
     def inner(self, core: float, radial: float) -> list[Floats]:
-        """Return the nodes (n, 2) on the four sides of a core; arguments as in `FiveBlocks`."""
+        """Return the nodes (n, 2) on each of the four sides of a core; parameters are as in `FiveBlocks`."""
         middle = np.concatenate([arc[:-1] for arc in self.arcs]).mean(axis=0)
         u = np.linspace(-1.0, 1.0, len(self.arcs[0]))
         t = (0.5 + 0.5 * ((1.0 - radial) * u + radial * tan(0.25 * np.pi * u)))[:, None]
@@ -58,7 +58,7 @@ class CrossSection:
     def across(self, core: float, radial: float, *, eighth: bool = False) -> tuple[Floats, Floats]:
         """Return the lengths (k,) of lines through the ring, and of the core cells (k,) at the ends of lines.
 
-        `eighth`: only an eighth of the lines, which suffices for a circle.
+        If `eighth`, only an eighth of the lines is returned, which suffices for a circle.
         """
         inner = self.inner(core, radial)
         lengths = [norms(side - arc) for side, arc in zip(inner, self.arcs, strict=True)]
@@ -83,8 +83,8 @@ def planned(
 ) -> FiveBlocks:
     """Return one division for all sections: cells grow by at most `growth`, or as little as possible.
 
-    `rows`: rows of the ring; None: the smallest sufficient number. `radial`, for circles, aligns the ring's
-    lines with radii.
+    `rows` is the number of rows of the ring, by default the smallest sufficient one. `radial`, for circles,
+    aligns the lines of the ring with radii.
     """
     best, least = FiveBlocks(_SIZES[0], rows or 1), np.inf
     for core in _SIZES:
@@ -122,7 +122,7 @@ def _side_ratio(sides: Sides) -> float:
 
 
 def filled(section: CrossSection, plan: FiveBlocks) -> Grid:
-    """Return the five blocks inside a closed curve, whose boundary is the patch ``wall``."""
+    """Return the grid of five blocks inside a closed curve, whose boundary is the patch ``wall``."""
     side = len(section.arcs[0]) - 1
     inner = section.inner(plan.core, plan.radial)
     lengths, sizes = section.across(plan.core, plan.radial)

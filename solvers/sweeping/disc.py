@@ -23,8 +23,8 @@ _TURNS = (((1, 0), (0, 1)), ((0, -1), (1, 0)), ((-1, 0), (0, -1)), ((0, 1), (-1,
 class Disc:
     """A circle and its division into cells.
 
-    Raises InputError: a value out of range; `around` is no multiple of four; both `cells` and `around` are
-    given.
+    Raises InputError if a value is out of its range, if `around` is no multiple of four, or if both `cells`
+    and `around` are given.
     """
 
     radius: float  # radius in any unit
@@ -97,5 +97,5 @@ class Disc:
 
 
 def butterfly(disc: Disc) -> Grid:
-    """Return the grid of a disc around the origin, with the wall ``wall``."""
+    """Return the grid of a disc around the origin, whose boundary is the patch ``wall``."""
     return replace(filled(disc.section(disc.side), disc.plan(disc.side)), name="circle")

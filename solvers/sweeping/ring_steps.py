@@ -14,10 +14,10 @@ _CLOSE = 1e-9  # of the length, to which steps fill it
 
 
 def ring_steps(lengths: Floats, sizes: Floats, rows: int, first: float | None) -> Floats:
-    """Return the steps (k, rows) along k lines of `lengths` (k,) that end at cells of `sizes` (k,).
+    """Return the steps (k, rows) on k lines of `lengths` (k,) that end at cells of `sizes` (k,).
 
-    Steps begin with `first`; None: all ratios along a line are equal. If a ratio above `LARGEST` were needed,
-    steps do not fill the length (see `largest_ratio`).
+    Steps begin with `first`; if it is None, all ratios along a line are equal. If a ratio above `LARGEST`
+    were needed, steps do not fill the length (see `largest_ratio`).
     """
     most = math.log(LARGEST)
     low, high = np.full(len(lengths), 0.0 if first else -most), np.full(len(lengths), most)
@@ -39,7 +39,7 @@ def _steps(sizes: Floats, rows: int, first: float | None, rate: Floats) -> Float
 
 
 def fewest_rows(lengths: Floats, sizes: Floats, first: float | None, growth: float) -> int:
-    """Return the smallest number of rows for which `ring_steps` grow by at most `growth`."""
+    """Return the least number of rows to try so that `ring_steps` grow by at most `growth`."""
     if first is None:
         return max(1, round(float((lengths / sizes).mean())) - TRIED // 2)
     even = math.ceil(float((lengths / np.maximum(sizes, first)).max()) - _CLOSE)
@@ -50,9 +50,9 @@ def fewest_rows(lengths: Floats, sizes: Floats, first: float | None, growth: flo
 
 
 def largest_ratio(lengths: Floats, sizes: Floats, steps: Floats) -> float:
-    """Return the largest ratio of neighbouring cells along lines; cells of `sizes` (k,) follow their ends.
+    """Return the largest ratio of neighbouring cells along lines that end at cells of `sizes` (k,).
 
-    Infinite if the steps (k, rows) do not fill the `lengths` (k,).
+    It is infinite if the `steps` (k, rows) do not fill the `lengths` (k,).
     """
     if np.abs(steps.sum(axis=1) - lengths).max() > _CLOSE * lengths.max():
         return math.inf

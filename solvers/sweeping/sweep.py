@@ -69,8 +69,8 @@ def sweep(section: Grid, path: Path, settings: Sweep | None = None) -> Grid:
     The first plane is the patch ``inlet``, the last ``outlet``; a closed path has neither. Outer patches
     without a name are called ``wall``, and those without a kind are walls.
 
-    Raises InputError: the section is not planar, or is periodic; a bend is too tight for the section; the
-    path needs too many planes; also as `frames_along`.
+    Raises InputError if the section is not planar or is periodic, if a bend is too tight for the section, if
+    the path needs too many planes, or as `frames_along`.
     """
     settings = settings or Sweep()
     check_planes(section, settings.planes)
@@ -93,7 +93,7 @@ def sweep(section: Grid, path: Path, settings: Sweep | None = None) -> Grid:
 
 
 def check_planes(section: Grid, planes: int | None) -> None:
-    """Raise InputError if a section in so many `planes` has too many cells."""
+    """Raise InputError if a section swept in this number of `planes` has too many cells."""
     if planes is not None:
         check_reach(
             section.cells * (planes - 1.0),
@@ -169,7 +169,7 @@ def _check_bends(
 
 
 def walled(section: Grid) -> Grid:
-    """Return a section whose whole outer boundary has patches with a kind."""
+    """Return a section whose outer boundary has patches with a kind. Raises InputError if it is periodic."""
     if any(connection.transform for connection in section.connections):
         raise InputError("the section is periodic", "leave its periodic connections out")
     patches: list[Patch] = []
