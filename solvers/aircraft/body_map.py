@@ -54,7 +54,7 @@ class BodyMap:
         self._arcs = monotone_cubic(turns, body.arcs_near(table[:, 0]), even)[:, None, None]
 
     def points(self, places: Floats) -> Floats:
-        """Return the points (..., 3) in space at s, theta, zeta = `places` (..., 3)."""
+        """Return the points (..., 3) x, y, z at s, theta, zeta = `places` (..., 3)."""
         s, theta, zeta = np.moveaxis(places, -1, 0)
         x, r = np.moveaxis(self.meridional(s.ravel(), zeta.ravel()).reshape(*s.shape, 2), -1, 0)
         r = np.maximum(r, 0.0)
@@ -73,7 +73,7 @@ class BodyMap:
         return np.clip(_between(self._arcs, along, np.zeros_like(s))[:, 0], 0.0, self.body.length)
 
     def around(self, places: Floats) -> Floats:
-        """Return the length (...) in space of one radian of theta at s, theta, zeta = `places` (..., 3)."""
+        """Return the physical length (...) of one radian of theta at s, theta, zeta = `places` (..., 3)."""
         points = self.points(places)
         return np.hypot(points[..., 1] - self.body.y, points[..., 2])
 

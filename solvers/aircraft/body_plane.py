@@ -208,7 +208,7 @@ class BodyEnd:
         """Return two patches (ni, nj, 3) up to the `side` (n, 3) of a column: rows, and a core at the pole.
 
         `last` (n,) are the lengths in s of the cells at the side. Nodes are s, theta, zeta (`BodyMap`), where
-        s is measured from the pole. `points` maps nodes to space.
+        s is measured from the pole. `points` maps nodes to x, y, z.
         """
         begin, first = self._begin(side)
         lines = lines_between(points, begin, side, (first, last), self.cells)

@@ -38,7 +38,7 @@ Within: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 
 @dataclass(frozen=True)
 class Rectangle:
-    """The rectangle around the section of a wing: limits of s and theta (`BodyMap`), as lengths in space."""
+    """The rectangle around the section of a wing: limits of s and theta (`BodyMap`), as physical lengths."""
 
     front: float
     back: float
@@ -50,7 +50,7 @@ def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
     """Return the rectangle around a `section` (n, 2) of s and theta.
 
     On each side it covers at most half of the distance from the section to the limits `within` of s and
-    theta. `scale` (2,) are the lengths in space of a unit of s and of theta.
+    theta. `scale` (2,) are the physical lengths of a unit of s and of theta.
     """
     (front, low), (back, high) = (section * scale).min(axis=0), (section * scale).max(axis=0)
     (begin, end), (bottom, top) = (
@@ -64,11 +64,11 @@ def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
 
 
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
-    """Return how many nodes from its edges, on each side, a section `root` has up to the corners of `box`.
+    """Return how many nodes of a section `root` are between its edges and the lines to the corners of `box`.
 
-    The corners are those at which lines from these nodes end. The first number is counted from the middle of
-    the trailing edge, the second from the nose. Both are at least `fewest`. With them, cells on both sides of
-    a corner have similar lengths, and normals of the root point to the corners.
+    The first number is counted from the middle of the trailing edge to either side, the second from the nose.
+    Both are at least `fewest`. With them, cells on both sides of a corner have similar lengths, and normals
+    of the root point to the corners.
     """
     normals, half = _normals(root), (len(root) - 1) // 2
     tried = np.arange(fewest, half // 3 + 1)
@@ -97,8 +97,7 @@ def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]
 def outer_loop(root: Floats, box: Rectangle, corners: tuple[int, int]) -> Floats:
     """Return the nodes (n, 2) on the rectangle `box` at which lines from a section `root` (n, 2) end.
 
-    The root starts in the middle of the trailing edge and runs to larger theta. `corners` are its
-    `corner_nodes`.
+    The root runs from the middle of the trailing edge to larger theta. `corners` are its `corner_nodes`.
     """
     half = (len(root) - 1) // 2
     edge, nose = corners

@@ -45,17 +45,17 @@ class Hole:
 
     @cached_property
     def box(self) -> Rectangle:
-        """Rectangle around the section, in lengths in space."""
+        """Rectangle around the section, in physical lengths."""
         return rectangle(self.section, self.within, self.scale)
 
     @property
     def plane(self) -> Floats:
-        """(n, 2) nodes around the section, in lengths in space."""
+        """(n, 2) s and theta of the nodes around the section, as physical lengths."""
         return self.section * self.scale
 
     @property
     def bands(self) -> tuple[float, float]:
-        """Lengths in space below and above the rectangle, up to keel, crown or the next wing."""
+        """Physical distances below and above the rectangle, up to keel, crown or the next wing."""
         bottom, top = (theta * float(self.scale[1]) for theta in (self.below, self.within[1][1]))
         if self.fin:
             top = self.box.high + self.box.low - bottom
@@ -174,7 +174,7 @@ class CollarLevel:
 
     @cached_property
     def beside(self) -> tuple[float, float]:
-        """Lengths in space of the first cells outside the rectangle, below and above it."""
+        """Physical lengths of the first cells outside the rectangle, below and above it."""
         outer, half = self.ring[:, -1, 1], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
         corners = (half + nose, len(outer) - 1 - edge), (half - nose, edge)

@@ -22,8 +22,8 @@ def lines_between(
 ) -> Floats:
     """Return nodes (n, cells + 1, 3), s, theta, zeta (`BodyMap`), on lines from `begin` to `end` (n, 3).
 
-    `sizes` are the differences in s (n,) over the first and over the last cell. Between them, the lengths of
-    cells in space change smoothly. `points` maps nodes to space.
+    `sizes` are the differences in s (n,) over the first and over the last cell. Between them, physical cell
+    lengths change smoothly. `points` maps nodes to x, y, z.
     """
     lines, arcs, ends = _measured(points, begin, end, sizes)
     nodes = sampled(lines, arcs, smooth_arcs(arcs[:, -1], ends, cells))
@@ -34,7 +34,7 @@ def lines_between(
 def ways_between(
     points: Points, begin: Floats, end: Floats, sizes: tuple[Floats, Floats]
 ) -> tuple[Floats, tuple[Floats, Floats]]:
-    """Return the lengths (n,) in space of the lines of `lines_between`, and of their first and last cells."""
+    """Return the physical lengths (n,) of the lines of `lines_between`, and of their first and last cells."""
     _, arcs, ends = _measured(points, begin, end, sizes)
     return arcs[:, -1], ends
 

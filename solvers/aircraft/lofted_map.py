@@ -36,7 +36,7 @@ class LoftedMap(BodyMap):
         self._fading = min(1.0, _FADING / more) if more > 0.0 else 1.0
 
     def points(self, places: Floats) -> Floats:
-        """Return the points (..., 3) in space at s, theta, zeta = `places` (..., 3)."""
+        """Return the points (..., 3) x, y, z at s, theta, zeta = `places` (..., 3)."""
         s, theta, zeta = np.moveaxis(places, -1, 0).reshape(3, -1)
         x, r = self.meridional(s, zeta).T
         r = np.maximum(r, 0.0)
@@ -74,7 +74,7 @@ class LoftedMap(BodyMap):
         return super().places(lowered)
 
     def around(self, places: Floats) -> Floats:
-        """Return the length (...) in space of one radian of theta at s, theta, zeta = `places` (..., 3)."""
+        """Return the physical length (...) of one radian of theta at s, theta, zeta = `places` (..., 3)."""
         return np.asarray(norms(self._around(places)))
 
     def steepness(self, places: Floats) -> Floats:

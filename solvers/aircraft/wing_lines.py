@@ -65,8 +65,7 @@ class WingLines:
     ) -> Self:
         """Return `nodes` lines along the span of a wing; sharp trailing edges are opened to `base` chords.
 
-        Raises InputError for too few nodes, or if the wing does not begin inside the body, or never leaves
-        it.
+        Raises InputError for too few nodes, or if the wing begins outside the body or does not leave it.
         """
         if isinstance(wing, SurfaceWing):
             least = _SHARP if base is None else base

@@ -43,9 +43,8 @@ def fine_layout(
 ) -> Layout:
     """Return a layout that is refined to the requested number of cells, with optimised nodes.
 
-    Give `cells` or `cell_size`, an edge length; by default there are `CELLS` cells. Each cell is then divided
-    into four, `halved` times, so that coarser grids are nested in the result. Raises NoValidGridError if
-    cells stay folded.
+    Give `cells` or `cell_size`, an edge length; the default is `CELLS` cells. Each cell is then divided into
+    four, `halved` times, so that coarser grids are nested. Raises NoValidGridError if cells stay folded.
     """
     timings = {} if timings is None else timings
     area = layout.mesh.domain.area

@@ -63,7 +63,7 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
 def grid_of(
     shape: DomainShape, request: BlockRequest, fine_of: Callable[[Domain, Timings], Layout]
 ) -> Solution:
-    """Return the grid of the layout that `fine_of` makes of the domain. Raises as `make_blocks`."""
+    """Return the grid of the layout that `fine_of` makes of the domain. Raises errors as `make_blocks`."""
     begun = perf_counter()
     timings: Timings = {}
     domain, height = _checked(shape.domain, request), request.heights(shape.unit)
@@ -128,7 +128,7 @@ def _cut_off_of_holes(fine: Layout) -> str:
 
 
 def find_layout(shape: DomainShape, request: BlockRequest) -> Layout:
-    """Return the blocks of a domain, by default with the number of cells of the quad mesh of `decompose`.
+    """Return the blocks of a domain, with the requested number of cells or, by default, that of `decompose`.
 
     Raises InputError as `make_blocks`; SolverError if the decomposition fails.
     """

@@ -23,7 +23,7 @@ LARGEST_PITCH = 1e12  # largest pitch in the unit of the blade, so that squares 
 
 @dataclass(frozen=True)
 class BlockRequest(FirstCell):
-    """Options of the multi-block grid of a domain, checked on construction; others are as in `GridRequest`.
+    """Options of the multi-block grid of a domain, checked on construction; see also `GridRequest`.
 
     Parameters
     ----------

@@ -58,9 +58,8 @@ class Passage:
     ) -> Self:  # fmt: skip
         """Return the passage around a closed front (the blade, or the outer edge of its layers).
 
-        Blocks end at the distances `near` (in pitches) upstream and downstream of the front, or at the
-        distances `inlet` and `outlet` if these are smaller. By default, `centre` is the point farthest from
-        the front.
+        Blocks end at the distances `near` (in pitches) before and behind the front, or at `inlet` and
+        `outlet` if these are smaller. By default, `centre` is the point farthest from the front.
         """
         points = front.curve.points
         centre = inner_point(points) if centre is None else centre

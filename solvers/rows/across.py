@@ -54,10 +54,10 @@ class ChannelLines:
         return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
     def weights(self, pairs: Floats) -> Floats:
-        """Return the squares (p,) of `slant` for lines between pairs (p, 2) of places u around the blade."""
+        """Return the squares (p,) of the field `slant` for lines between pairs (p, 2) of places u."""
         return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
 
     def aside(self, pairs: Floats) -> Floats:
-        """Return how far (p,), in u, the second place of each pair (p, 2) is from the first's opposite."""
+        """Return the distance (p,) in u of second places of pairs (p, 2) from those opposite the first."""
         upper, lower = (wrapped(each, _FROM) for each in (pairs[:, 0], 1.0 - pairs[:, 1]))
         return np.asarray(lower - np.interp(upper, self.upper, self.lower))

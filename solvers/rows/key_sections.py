@@ -86,7 +86,7 @@ class KeySection:
 
 @dataclass(frozen=True, eq=False)
 class Beginning:
-    """The middle section, and the data for all others."""
+    """The middle section of a row, and the data from which the others are made."""
 
     plan: SectionPlan  # data that all sections share
     columns: Sequence[LayerColumns | None]  # columns of the layers of each section; None for the middle one

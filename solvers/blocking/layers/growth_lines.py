@@ -49,10 +49,9 @@ class GrowthLines:
     ) -> Self:
         """Return all pairs of a layout, with limits (logarithms of ratios) that depend on the position.
 
-        The limit is `limit` along grid lines that start at `walls`, a mask (n,) of nodes, and across block
-        sides. It is `elsewhere` for other pairs, and at irregular vertices. Pairs parallel to a wall, in the
-        blocks beside it, may have the ratio on the wall if that is larger, unless the wall nodes are
-        `sliding` (n,).
+        The limit is `limit` across block sides, and along grid lines that start at `walls`, a mask (n,) of
+        nodes. It is `elsewhere` for other pairs, and at irregular vertices. In blocks beside a wall, pairs
+        parallel to it may have the ratio on the wall if that is larger, unless its nodes are `sliding` (n,).
         """
         mesh, pairs = layout.mesh, cls.of(layout.mesh, elsewhere)
         nodes = pairs.nodes

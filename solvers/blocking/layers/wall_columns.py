@@ -53,7 +53,7 @@ def wall_columns(loop: Loop, largest: float, sums: Sequence[float] = ()) -> Floa
 
 
 def nearest_arc(arcs: Floats, arc: float, length: float) -> int:
-    """Return the index in `arcs` (n,) of the arc length nearest to `arc`, on a closed curve of a length."""
+    """Return the index in `arcs` (n,) of the arc length nearest to `arc`, on a closed curve `length` long."""
     off = (arcs - arc) / length
     return int(np.abs(off - np.round(off)).argmin())
 

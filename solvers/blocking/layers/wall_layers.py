@@ -68,9 +68,8 @@ class WallLayers:
     ) -> Self:  # fmt: skip
         """Return the layers of a domain: rings around `loops`, rows of blocks at `stretches` and `sheets`.
 
-        `loops` and `sheets` are indices of loops. Sheets have one sharp edge, and their layers continue along
-        the wake. `stretches` are parts of loops. Raises InputError if there is too little room, or if layers
-        fold.
+        `loops` and `sheets` are indices of loops, `stretches` parts of loops. Sheets have one sharp edge and
+        a wake with layers. Raises InputError if there is too little room, or if layers fold.
         """
         rings = rings_around(domain, loops, settings)
         numbers = sorted({*sheets, *(stretch.loop for stretch in stretches)})

@@ -111,9 +111,8 @@ def with_wall_rows(
 ) -> tuple[Layout, WallRows]:
     """Return the layout with rows of quads added along `stretches` and around `sheets`, and these rows.
 
-    `stretches` are parts of loops, `sheets` indices of loops with a sharp edge. If the quads of the layout
-    are symmetric about `mirrors`, the blocks are too. Raises SolverError if lines of the mesh do not bound
-    blocks.
+    `stretches` are parts of loops, `sheets` indices of loops with a sharp edge. Blocks are symmetric about
+    `mirrors` if the quads are. Raises SolverError if lines of the mesh do not bound blocks.
     """
     mesh = layout.mesh
     rungs: list[Edge] = []  # an edge across each row, from wall to front

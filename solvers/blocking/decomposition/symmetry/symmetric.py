@@ -43,12 +43,12 @@ def symmetric_blocks(
 ) -> BaseComplex:  # fmt: skip
     """Return symmetric blocks of the domain of `blocks`, or `blocks` if no symmetric ones are about as good.
 
-    Their score may be worse by `worth`. If there are three mirrors or more than four, blocks symmetric about
-    all of them are tried: first the given blocks, then blocks made from a sector. If two mirrors are
-    perpendicular, blocks symmetric about both are tried first, then about one of them. Blocks that are also
-    symmetric about the two diagonals are preferred. Given blocks that are symmetric are replaced by blocks
-    made from a part of the domain only if these are better and not more numerous. `find` returns the mesh of
-    a part. `unsized` returns a mesh without prescribed edge lengths, which is tried last.
+    The score of symmetric blocks may be worse by `worth`. With three mirrors or more than four, blocks
+    symmetric about all of them are tried: first the given blocks, then blocks made from a sector. With two
+    perpendicular mirrors, blocks symmetric about both are tried first, then about one of them. Blocks that
+    are also symmetric about the two diagonals are preferred. Given blocks that are symmetric are replaced by
+    blocks made from a part of the domain only if these are better and not more numerous. `find` returns the
+    mesh of a part. `unsized` returns a mesh without prescribed edge lengths, which is tried last.
     """
     mesh, every = blocks.mesh, mirrors_of(blocks.mesh.domain)
     pair = every[:1] if len(every) % 2 else every[:: max(len(every) // 2, 1)]
@@ -136,9 +136,8 @@ def _symmetric(mesh: QuadMesh, mirrors: Sequence[Mirror]) -> tuple[QuadMesh, Ima
 def cut_on_mirrors(mesh: QuadMesh, images: Images, more: Bools | None = None) -> BaseComplex:
     """Return the blocks of a mesh, cut so that the mirror image of a block side is again a block side.
 
-    Blocks end at mirrors through corners of the domain with two cells. A ring of quads is cut at a mirror
-    too. Blocks also end at edges in the mask `more` (e,). Raises SolverError if a ring has no line on a
-    mirror.
+    Blocks end at mirrors through corners of the domain with two cells, and at edges in the mask `more` (e,).
+    A ring of quads is cut at a mirror too. Raises SolverError if it has no grid line on a mirror.
     """
     blocks = base_complex(mesh, more)
     ring = bool(images) and any(len(distinct(block[[0, 0, -1], [0, -1, 0]])) < 3 for block in blocks.blocks)
