@@ -48,7 +48,7 @@ Reynolds = Annotated[float | None, _option(
 
 
 def at_walls(text: str | None, parameter: str) -> Any:
-    """Return one value, or values by wall; None for None. Raises InputError: other text.
+    """Return the value of an option, or its values by wall; None for None. Raises InputError: other text.
 
     >>> at_walls("1e-3", "first_cell"), at_walls("tubes=1e-3,floor=5e-3", "first_cell")
     (0.001, {'tubes': 0.001, 'floor': 0.005})
@@ -61,7 +61,7 @@ def at_walls(text: str | None, parameter: str) -> Any:
 
 @dataclass(frozen=True, kw_only=True)
 class LayerOptions:
-    """First cells at walls."""
+    """Options for the height of first cells at walls."""
 
     first_cell: FirstCell = None
     y_plus: YPlusAtWalls = None
@@ -84,7 +84,7 @@ class LayerOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class SideOptions:
-    """First cells at single sides of four-sided domains."""
+    """Options for the height of first cells at single sides of four-sided domains."""
 
     spacing_south: float | None = _option(
         metavar="H", help="Height of the first cell at the south side of a four-sided domain, in the unit of "

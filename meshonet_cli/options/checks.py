@@ -27,7 +27,7 @@ LeaveOutFailed = Annotated[bool, _option(
 
 @dataclass(frozen=True, kw_only=True)
 class CheckOptions:
-    """Validity of a grid."""
+    """Options for folded cells and their repair."""
 
     repair: bool | None = _option(
         "--repair/--no-repair", help="Repair folded cells. With --no-repair a grid with folded cells is an "
@@ -38,7 +38,7 @@ class CheckOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class GateOptions:
-    """Quality limits of a grid."""
+    """Options for quality limits of grids."""
 
     fail_on: list[str] | None = _option(
         metavar="GATE", help="Exit with code 1 if this condition holds, e.g. 'max_angle>170', "
@@ -52,9 +52,9 @@ class GateOptions:
     )
 
     def criteria(self, leave_out: bool = False, *, more: Sequence[str] = ()) -> "Criteria | None":
-        """Return gates and profiles, None if there are none; gates may also use the names in `more`.
+        """Return the gates and profiles, or None without any; gates may also name the quantities in `more`.
 
-        Raises InputError: an invalid gate; grids are to be left out, but there is neither gate nor profile.
+        Raises InputError if a gate is invalid, or if grids are to be left out without gate and profile.
         """
         if not (self.fail_on or self.profile):
             if leave_out:

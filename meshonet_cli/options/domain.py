@@ -22,7 +22,7 @@ Walls = Annotated[str | None, _option(
 
 @dataclass(frozen=True, kw_only=True)
 class BlockOptions:
-    """Division of a domain into blocks. Each of these options except --assemble makes a multi-block grid."""
+    """Options for the division of a domain into blocks; each except --assemble makes a multi-block grid."""
 
     assemble: bool = _option(
         default=False, help="Combine all inputs into one domain. If one input encloses the others, they are "
@@ -53,7 +53,7 @@ class BlockOptions:
     )
 
     def parameters(self) -> dict[str, Any]:
-        """Return the options as parameters of the library. Raises InputError: unreadable text."""
+        """Return the options as parameters of the library. Raises InputError if a text is invalid."""
         values = dict(vars(self), walls=(), periodic=tuple(map(_pair, self.periodic or ())))
         del values["assemble"]
         if self.layout is not None:
@@ -68,7 +68,7 @@ class BlockOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class DomainOptions(BlockOptions):
-    """Options of grids of domains: division into blocks, passage of a cascade."""
+    """Options for grids of domains: division into blocks, and passage of a cascade."""
 
     pitch: str | None = _option(
         metavar="DX,DY", help="Vector from one blade of a cascade to the next, in the unit of the input. The "
@@ -85,7 +85,7 @@ class DomainOptions(BlockOptions):
     )
 
     def parameters(self) -> dict[str, Any]:
-        """Return the options as parameters of the library. Raises InputError: unreadable text."""
+        """Return the options as parameters of the library. Raises InputError if a text is invalid."""
         values = super().parameters()
         if self.pitch is not None:
             values["pitch"] = numbers(self.pitch, (2,), "a vector", "use DX,DY, e.g. 0,0.8", "pitch")

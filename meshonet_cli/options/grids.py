@@ -26,9 +26,9 @@ class GridOptions(RunOptions, GateOptions, FileOptions):
         self, method: str, settings: Mapping[str, Any], sampling: SamplingOptions, layers: LayerOptions,
         *blocks: object, **more: Any,
     ) -> "GridRequest":  # fmt: skip
-        """Return the request for the grids, from blocks of options and the fields `more`.
+        """Return the request for grids from option groups and the fields `more`.
 
-        Raises InputError: see `GridRequest`.
+        Raises InputError as `GridRequest`.
         """
         from meshonet.solvers.pipeline.request import GridRequest
 
@@ -54,7 +54,7 @@ Refine = Annotated[int, option_of(METHOD)(
 
 
 def polish_steps(text: str) -> Literal["off"] | int:
-    """Return the value of ``--polish`` unless it is ``auto``. Raises InputError: other text.
+    """Return the value of ``--polish``, except ``auto``. Raises InputError: other text.
 
     >>> polish_steps("off"), polish_steps("3")
     ('off', 3)

@@ -18,11 +18,11 @@ GROUPS = (IO, SAMPLING, BOUNDARY_LAYER, DOMAIN, VOLUME, METHOD, CHECKS)  # in th
 
 
 def option_of(group: str) -> Callable[..., Any]:
-    """Return the function that declares an option of `group`, as a default or in `Annotated`.
+    """Return a function that declares an option of the group `group`, as a default value or in `Annotated`.
 
-    It takes the names of the option (by default `meshonet_cli.terminal.errors.option` of the parameter),
-    its ``default``, and the arguments ``metavar`` (by default the choices), ``help``, ``min`` and ``max`` of
-    `typer.Option`. Help texts show defaults that are numbers or words.
+    The function takes the names of the option, its ``default``, and the arguments ``metavar``, ``help``,
+    ``min`` and ``max`` of `typer.Option`. Without names, the name follows from that of the parameter; without
+    ``metavar``, the choices are shown. Help texts show defaults that are numbers or words.
     """
 
     def declared(*names: str, default: Any = None, **settings: Any) -> Any:
@@ -34,9 +34,9 @@ def option_of(group: str) -> Callable[..., Any]:
 
 
 def expanded(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return `function` with the fields of its dataclass parameters as separate parameters.
+    """Return a function with one parameter for each field of the dataclass parameters of `function`.
 
-    The function receives the options of a block as one object::
+    `function` itself receives each group of options as one object::
 
         def tfi(boundary: Boundaries, grids: GridOptions, sides: SideOptions): ...
     """
@@ -86,16 +86,16 @@ def _taken_by_typer(name: str, kind: Any, default: Any) -> list[inspect.Paramete
 
 
 def bad_value(text: str, what: str, remedy: str, parameter: str) -> Exception:
-    """Return the InputError for an option whose `text` is not what was expected (`what`)."""
+    """Return the error for an option with the value `text`; `what` says what it should be."""
     from meshonet.geometry.errors import InputError
 
     return InputError(f"{text!r} is not {what}", remedy, parameter=parameter)
 
 
 def numbers(text: str | None, counts: tuple[int, ...], what: str, remedy: str, parameter: str) -> Any:
-    """Return the numbers in the text of an option, None for None; `counts` says how many are permitted.
+    """Return the numbers in the text of an option, None for None; `counts` are the permitted numbers of them.
 
-    Raises InputError: other text.
+    Raises InputError for any other text; `what` says what it should be.
 
     >>> numbers("0,57.5", (2,), "a vector", "use DX,DY", "pitch")
     (0.0, 57.5)
@@ -112,7 +112,7 @@ def numbers(text: str | None, counts: tuple[int, ...], what: str, remedy: str, p
 
 
 def number(text: str, remedy: str, parameter: str) -> float:
-    """Return the number in an option. Raises InputError: other text."""
+    """Return the text of an option as a number. Raises InputError if it is none."""
     try:
         return float(text)
     except ValueError:
@@ -120,9 +120,9 @@ def number(text: str, remedy: str, parameter: str) -> float:
 
 
 def by_name(text: str, kind: Callable[[str], Any], remedy: str, parameter: str) -> dict[str, Any]:
-    """Return the values by name in an option NAME=VALUE,NAME=VALUE; `kind` reads a value.
+    """Return the values of an option NAME=VALUE,NAME=VALUE by name; `kind` converts the text of a value.
 
-    Raises InputError: other text; a repeated name.
+    Raises InputError if the text has another form, or if a name is repeated.
 
     >>> by_name("inlet=40,outlet=20", int, "use NAME=N", "count")
     {'inlet': 40, 'outlet': 20}
@@ -143,7 +143,7 @@ def by_name(text: str, kind: Callable[[str], Any], remedy: str, parameter: str) 
 
 
 def only_with(needed: str, present: bool, **others: object) -> None:
-    """Raise InputError if one of the `others` is given without the option `needed`."""
+    """Raise InputError if one of the options `others` is given, but not the option `needed`."""
     from meshonet.geometry.errors import InputError
 
     for name, value in others.items():

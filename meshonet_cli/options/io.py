@@ -59,7 +59,7 @@ Debug = Annotated[bool, _option(help="Show the traceback of errors.")]
 
 @dataclass(frozen=True, kw_only=True)
 class FileOptions(Files):
-    """Output of a command that writes files or datasets."""
+    """Options of commands that write files or datasets."""
 
     output: Output
     from_format: From = None
@@ -70,14 +70,14 @@ class FileOptions(Files):
 
 @dataclass(frozen=True, kw_only=True)
 class PrintOptions:
-    """Messages of a command."""
+    """Options for messages."""
 
     as_json: AsJson = False
     quiet: bool = _option("-q", "--quiet", default=False, help="Print only warnings and errors.")
     debug: Debug = False
 
     def session(self) -> "Session":
-        """Return the session with these options."""
+        """Return the session, which prints messages as these options request."""
         from meshonet_cli.terminal.session import Session
 
         return Session(quiet=self.quiet, as_json=self.as_json, debug=self.debug)
@@ -85,7 +85,7 @@ class PrintOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class InputOptions(PrintOptions):
-    """Selection of inputs from folders, zip archives and lists; shards; messages."""
+    """Options for the selection of inputs from folders, archives and lists, for shards, and for messages."""
 
     pick: list[str] | None = _option(
         metavar="PATTERN", help="Use only files whose name matches PATTERN, e.g. 'naca*', of folders, .zip "
@@ -99,9 +99,9 @@ class InputOptions(PrintOptions):
     def inputs(
         self, words: Sequence[str], *, grids: bool = False, suffixes: Sequence[str] = ()
     ) -> "Inputs":
-        """Return the inputs that `words` name: shapes, `grids`, or files with these suffixes.
+        """Return the inputs that `words` name: shapes, with `grids` grids, or files with these `suffixes`.
 
-        Raises InputError: an invalid shard; see also `Inputs`.
+        Raises InputError if the shard is invalid; other errors are those of `Inputs`.
         """
         from meshonet.formats.inputs import Inputs
 
@@ -109,14 +109,14 @@ class InputOptions(PrintOptions):
         return Inputs(tuple(words), frozenset(suffixes), tuple(self.pick or ()), shard, grids)
 
     def part(self) -> tuple[int, int]:
-        """Return K and N of the shard, 1 and 1 for all inputs. Raises InputError: an invalid shard."""
+        """Return K and N of the shard K/N, or 1 and 1 for all inputs. Raises InputError: an invalid shard."""
         match = re.fullmatch(r"(\d{1,9})/(\d{1,9})", self.shard or "1/1", re.ASCII)
         if match is None:
             raise bad_value(str(self.shard), "a shard", "use K/N, e.g. 3/8 for the third of eight", "shard")
         return int(match[1]), int(match[2])
 
     def batch(self, inputs: Any, files: Files) -> "Batch":
-        """Return the batch over `inputs` in this process."""
+        """Return the batch that processes `inputs` in this process."""
         from meshonet_cli.batch.run import Batch
 
         return Batch(inputs, files, self.session())
@@ -124,7 +124,7 @@ class InputOptions(PrintOptions):
 
 @dataclass(frozen=True, kw_only=True)
 class RunOptions(InputOptions):
-    """Selection of inputs, messages, and the engine of a batch."""
+    """Options for the selection of inputs, for messages, and for the engine of a batch."""
 
     jobs: int = _option(
         default=1, metavar="N", min=1, max=1024, help="Number of processes that share the inputs.",
@@ -139,7 +139,7 @@ class RunOptions(InputOptions):
     )
 
     def batch(self, inputs: Any, files: Files) -> "Batch":
-        """Return the batch over `inputs`. Raises InputError: options that exclude each other."""
+        """Return the batch that processes `inputs`. Raises InputError if options exclude each other."""
         from meshonet_cli.batch.run import Batch
 
         return Batch(inputs, files, self.session(), Engine(self.engine, self.jobs, self.scheduler))

@@ -32,7 +32,7 @@ Resolution = Annotated[str | None, _option(
 
 @dataclass(frozen=True, kw_only=True)
 class SamplingOptions:
-    """Distribution of the boundary nodes."""
+    """Options for the distribution of boundary nodes."""
 
     res: Resolution = None
     topology: TopologyName = _option(
@@ -99,7 +99,7 @@ class SamplingOptions:
     )
 
     def placed(self, layers: "Mapping[str, Any] | None" = None) -> "Sampling":
-        """Return the options, with those of `layers`, as `Sampling`. Raises InputError: an invalid value."""
+        """Return these options and those in `layers` as `Sampling`. Raises InputError: an invalid value."""
         from meshonet.geometry.spacing.sampling import Sampling
         from meshonet.solvers.pipeline.uses import counted
 
@@ -111,7 +111,7 @@ class SamplingOptions:
 
 
 def resolution(text: str) -> "Counts":
-    """Return the node counts of ``N``, ``NIxNJ`` or ``NIxNJxNK``. Raises InputError: other text.
+    """Return the node counts in ``N``, ``NIxNJ`` or ``NIxNJxNK``. Raises InputError: other text.
 
     >>> resolution("200"), resolution("400x100"), resolution("33x33x65")
     (200, (400, 100), (33, 33, 65))
@@ -126,7 +126,7 @@ def resolution(text: str) -> "Counts":
 
 
 def four_corners(text: str) -> tuple[int, int, int, int]:
-    """Return the four indices of ``I,J,K,L``. Raises InputError: other text.
+    """Return the four node indices in ``I,J,K,L``. Raises InputError: other text.
 
     >>> four_corners("0,10,20,30")
     (0, 10, 20, 30)

@@ -18,7 +18,7 @@ INTERVAL = 0.1  # least seconds between two texts on the terminal
 
 
 class Live:
-    """Shows cycles on the terminal, at most ten per second, by the function `show`."""
+    """Listener that shows solver cycles by the function `show`, at most ten per second."""
 
     def __init__(self, show: Callable[[str], None]) -> None:
         self._show = show
@@ -36,11 +36,10 @@ class Live:
 
 @contextlib.contextmanager
 def followed(session: Session, history: str | None) -> Iterator[Callable[[Report, str], None]]:
-    """Return a context that shows cycles on a terminal and writes them to the file `history`.
+    """Return a context that shows solver cycles on a terminal and writes them to the CSV file `history`.
 
-    Its value is a function, which is to be called with the report and the output file of each grid.
-
-    Raises InputError: `history` does not end in ``.csv``, or its folder does not exist.
+    The context gives a function that must be called with the report and the output file of each grid. Raises
+    InputError if `history` does not end in ``.csv``, or if its folder does not exist.
     """
     if history is not None:
         if Path(history).suffix.lower() != ".csv":

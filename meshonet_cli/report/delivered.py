@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class Delivered(Timed):
-    """Report of the content of a file: `facts` are for JSON, `text` and `notes` for messages."""
+    """Report of what was written: `facts` are for JSON, `text` and `notes` for messages."""
 
     facts: dict[str, Any]
     text: str
@@ -37,7 +37,7 @@ class Delivered(Timed):
 def delivered(
     item: Item[Any], what: Grid | Boundary, facts: dict[str, Any], text: str = "", notes: Sequence[str] = ()
 ) -> Delivered:
-    """Return the report of a grid or boundary; `text` replaces the name of its topology."""
+    """Return the report of a grid or boundary; messages show `text`, or its topology if `text` is empty."""
     counts, topology = _counts(what), what.topology
     size = (
         "{ni} x {nj} nodes" if "ni" in counts else "{blocks} blocks, {cells} cells, {interfaces} interfaces"
@@ -55,6 +55,6 @@ def _counts(what: Grid | Boundary) -> dict[str, int]:
 
 
 def part_names(what: Grid | Boundary) -> dict[str, Any]:
-    """Return the names of the patches of a boundary for JSON."""
+    """Return the names of the patches of a grid or boundary for JSON."""
     names = [patch.name for patch in what.patches]
     return {"parts": list(dict.fromkeys(names)) if what.topology == "blocks" else names}

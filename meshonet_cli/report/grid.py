@@ -27,10 +27,10 @@ _METHODS = {"conformal": "conformal map"}  # descriptions of methods whose names
 
 @dataclass
 class Report(Timed):
-    """Report of one grid.
+    """Report of a grid.
 
-    `wake` is the number of cells along the wake of a C grid, else 0. `seconds` are wall-clock seconds by
-    stage: read, boundary, load (modules and models), grid, guard, quality, write, and total.
+    `wake` is the number of cells along the wake of a C grid, else 0. `seconds` are the wall-clock seconds of
+    each stage: read, boundary, load (of modules and models), grid, guard, quality, write, and total.
     """
 
     method: str
@@ -51,12 +51,12 @@ class Report(Timed):
 
     @property
     def warning(self) -> str:
-        """Warning about folded cells."""
+        """Warning about folded cells; empty if there are none."""
         folded = self.quality.folded
         return f"{self.item.label}: {folded} folded cells are in {self.output}" if folded else ""
 
     def row(self) -> MemberRow | None:
-        """Return the row of the grid in a table of verdicts; None if it was not judged."""
+        """Return the row of the grid for the table of verdicts; None if the grid was not judged."""
         if not self.judgement:
             return None
         from meshonet_cli.terminal.summary import MemberRow, figures
@@ -85,7 +85,7 @@ class Report(Timed):
         }  # fmt: skip
 
     def lines(self) -> str:
-        """Return the report of a single grid as text."""
+        """Return the full report, which is printed for a single grid, as text."""
         angle = self.quality["max_angle"]
         kind = "multi-block" if self.topology == "blocks" else self.topology
         head = f"{self.item.label} -> {self.output}: {self._size()}, {kind} grid"
@@ -125,7 +125,7 @@ class Report(Timed):
         return facts if math.isfinite(facts["expected_error"]) else {**facts, "expected_error": None}
 
     def line(self) -> str:
-        """Return the report of a member of a batch: one line, then lines about changes."""
+        """Return the short report, which is printed in a batch: one line, then lines about changes."""
         angle = self.quality["max_angle"].max
         head = (
             f"{self.item.label} -> {self.output}: {self._size(short=True)}, "

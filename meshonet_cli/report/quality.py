@@ -31,14 +31,14 @@ _AXES = {2: "at x, y", 3: "at x, y, z"}  # headings of the column with centres o
 
 @dataclass
 class Measured(Timed):
-    """Report of a measured grid."""
+    """Report of the quality of a grid."""
 
     report: QualityReport
     judgement: Judgement
     judged: bool
 
     def row(self) -> MemberRow:
-        """Return the row of this grid in the table of all grids."""
+        """Return the row of the grid for the table of all grids."""
         comparison = self.report.comparison
         values = figures(self.report.quality) | (comparison.figures() if comparison else {})
         return MemberRow(self.item.label, values, self.judgement if self.judged else None)
@@ -97,7 +97,7 @@ def _period_line(row: Period) -> str:
 
 
 def quality_table(grid: Grid, quality: Quality) -> str:
-    """Return the metrics as a table; percentiles are required."""
+    """Return the metrics as a table; `quality` must contain percentiles."""
     places = max(len(summary.worst) for summary in quality.metrics.values())
     rows = [["metric", "min", "p01", "mean", "p99", "max", f"worst at {_PLACES[places]}", _axes(grid)]]
     for metric in metrics_of(grid):
@@ -120,7 +120,7 @@ def blocks_line(blocks: BlockFigures) -> str:
 
 
 def lines_table(grid: Grid, blocks: BlockFigures) -> str:
-    """Return angles, growth and bends of grid lines in a multi-block grid as a table."""
+    """Return angles, growth and bends along grid lines of a multi-block grid as a table."""
     angles = blocks.deviation
     rows = [["angles and lines", "mean", "p99", "max", f"at {_PLACES[len(angles.at)]}", _axes(grid)]]
     values = (angles.mean, angles.p99, angles.max)
@@ -137,7 +137,7 @@ def lines_table(grid: Grid, blocks: BlockFigures) -> str:
 
 
 def folded_words(quality: Quality) -> str:
-    """Return the number of folded cells as text; for volumes by corners and by Bezier coefficients."""
+    """Return the number of folded cells as text; volumes by corners and by Bezier coefficients."""
     words = f"{quality.folded} folded" if quality.folded else "none folded"
     if quality.bezier_folded is None:
         return words
@@ -162,7 +162,7 @@ def _axes(grid: Grid) -> str:
 
 
 def comparison_lines(comparison: Comparison) -> str:
-    """Return a comparison with a reference as two lines."""
+    """Return the comparison with a reference grid as two lines."""
     d = comparison.difference
     return (
         f"distance to the other grid: max {figure(d.max)} at {named(d.at)}, "
@@ -175,7 +175,7 @@ def comparison_lines(comparison: Comparison) -> str:
 
 
 def walls_table(rows: tuple[WallRow, ...]) -> str:
-    """Return the cells at the walls as a table."""
+    """Return the figures of the first cells at each wall as a table."""
     table = [["at the walls", "min", "mean", "max", "equal cells"]]
     for row in rows:
         table.append([f"{row.name}: first cell", *_spread(row.height), str(row.equal_cells)])
@@ -202,7 +202,7 @@ def y_plus_table(flow: Flow, y_plus: Mapping[str, YPlus]) -> str:
 
 
 def growth_table(figures: Figures) -> str:
-    """Return the growth of cells as a table."""
+    """Return the growth ratios of cells as a table."""
     grid = figures.grid
     places = _PLACES[1 + len(grid.blocks[0].counts) if grid.topology == "blocks" else 2]
     rows = [["growth", "mean", "max", f"at {places}", _axes(grid)]]

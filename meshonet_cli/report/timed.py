@@ -17,7 +17,7 @@ STAGES = ("read", "boundary", "load", "layout", "grid", "guard", "quality", "com
 
 @dataclass
 class Timed:
-    """Report of a member of a batch: the member, its output file (or `left_out`), and seconds by stage."""
+    """Report of a member: its output file, whether it was `left_out`, and the seconds of each stage."""
 
     item: Item[Any]
     notes: tuple[str, ...] = field(default=(), kw_only=True)
@@ -31,12 +31,12 @@ class Timed:
         return ""
 
     def row(self) -> MemberRow | None:
-        """Return the row of this result in the table of verdicts; None if it was not judged."""
+        """Return the row of this member for the table of verdicts; None if it was not judged."""
         return None
 
     @property
     def failure(self) -> tuple[str, str, str, bool]:
-        """Input, member, reason and whether to try again, for the list of a dataset."""
+        """Input, name, reason, and whether another try may succeed, for a dataset's list of failures."""
         row = self.row()
         limits = ", ".join(row.judgement.beyond) if row and row.judgement else ""
         return self.item.source, self.item.label, f"left out, as it fails: {limits}", False
@@ -50,16 +50,16 @@ class Timed:
         raise NotImplementedError
 
     def line(self) -> str:
-        """Return the report as one line for a batch."""
+        """Return the report as one line, for a batch."""
         return self.lines()
 
     def member_json(self) -> dict[str, Any]:
-        """Return the member and its output file for JSON."""
+        """Return the input, the name and the output file of the member for JSON."""
         return {"input": self.item.source, "name": self.item.name, "output": self.output}
 
     @property
     def total(self) -> float:
-        """Seconds of all stages."""
+        """Seconds of all stages together."""
         return sum(self.seconds.values(), start=self.item.seconds)
 
     def times(self) -> str:

@@ -17,7 +17,7 @@ LINES = 25  # lines about a run where there is no terminal
 
 
 def result_lines(result: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the results of a trained model as text."""
+    """Yield lines of text about the errors of a trained model."""
     name, figures = result["model"], result["figures"]
     if name == "strip":
         network, base = figures["network"]["median"], figures["base"]["median"]
@@ -35,9 +35,9 @@ def result_lines(result: Mapping[str, Any]) -> Iterator[str]:
 
 
 class Log:
-    """Shows progress, and appends a row per report to the CSV file `path`, if given.
+    """Listener of a training that shows progress and writes rows to the CSV file `path`, if given.
 
-    A new training overwrites the file; a resumed one removes the rows after its checkpoint.
+    A new training overwrites the file; a resumed training first removes the rows after its checkpoint.
     """
 
     def __init__(self, session: Session, path: str | None, *, resume: bool) -> None:

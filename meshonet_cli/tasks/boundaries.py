@@ -23,9 +23,9 @@ EDGE_NODES = 1000
 
 
 def write_boundaries(batch: Batch, sampling: Sampling, sensors: int | None = None) -> int:
-    """Sample shapes, write them, and return the exit code.
+    """Place boundary nodes on the shapes of a batch, write the boundaries, and return the exit code.
 
-    Raises InputError: a format that cannot store `sensors`, or several boundaries.
+    Raises InputError if `sensors` are requested and the output cannot store them.
     """
     files = batch.files
     drawn = isinstance(batch.inputs, DrawnInputs)
@@ -43,7 +43,7 @@ def write_boundaries(batch: Batch, sampling: Sampling, sensors: int | None = Non
 
 
 def itself(member: Draw) -> Iterator[Draw]:
-    """Yield `member`, a drawn member of a family, which is its own content."""
+    """Yield `member`: a drawn member of a family needs not be read."""
     return iter([member])
 
 

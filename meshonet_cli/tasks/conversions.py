@@ -18,7 +18,7 @@ from meshonet_cli.terminal.text import aligned
 
 
 def convert_files(batch: Batch, conversion: Conversion, plot3d: str | None = None) -> int:
-    """Convert the inputs to another format and return the exit code; `plot3d` is a variant of Plot3D."""
+    """Convert the inputs of a batch and return the exit code; `plot3d` has options of the Plot3D format."""
     files = batch.files
     first = batch.inputs.first()
     from_format, to_format = plot3d_variant(plot3d, first, files.output, files.from_format, files.to_format)
@@ -47,9 +47,9 @@ def _converted(
 
 
 def print_formats(session: Session) -> int:
-    """Print the properties of all formats, with JSON one object each, and return the exit code.
+    """Print a table of all formats, or a JSON object for each, and return the exit code.
 
-    In the table, long lists of endings are cut short.
+    The table shows only the beginning of a long list of extensions.
     """
     from meshonet.formats.catalogue import rows
 

@@ -22,7 +22,7 @@ def write_deformed(
     batch: Batch, walls: Mapping[str, NewWall] | NewWall, criteria: Criteria | None, *, allow_invalid: bool,
     threads: int | None,
 ) -> int:  # fmt: skip
-    """Deform the grids to their new `walls`, write them, and return the exit code."""
+    """Deform the grids of a batch to new `walls`, write them, and return the exit code."""
     percentiles = criteria is not None and criteria.percentiles
     request = DeformRequest(allow_invalid, percentiles, batch.engine.threads(threads))
     batch.session.judges = criteria is not None
@@ -48,9 +48,9 @@ def _option(new: NewWall) -> str:
 def walls_of(
     wall: Sequence[str], rotate: Sequence[str], shift: Sequence[str]
 ) -> Mapping[str, NewWall] | NewWall:
-    """Return the new walls that options describe: by name, or a single wall.
+    """Return the new walls that options describe, by name; or a single new wall if it has no name.
 
-    Raises InputError: an invalid word; a wall named twice; an unreadable file.
+    Raises InputError if a text is invalid, a wall is named twice, or a file is unreadable.
     """
     if not (wall or rotate or shift):
         raise InputError("nothing is moved", "give {wall}, {rotate} or {shift}", source="deform")

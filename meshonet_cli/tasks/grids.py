@@ -45,11 +45,10 @@ def _grids(
 def reported(
     member: Item[Any], result: Result, criteria: Criteria | None, *, detailed: bool = True
 ) -> tuple[Grid, Report]:
-    """Return the grid of `member`, with command and verdict in its provenance, and its report.
+    """Return the grid of `member`, whose provenance gets the command and the verdict, and its report.
 
-    A `detailed` report has angles and growth of lines in multi-block grids, for JSON.
-
-    Raises InputError: a gate for a figure that these cells do not have.
+    With `detailed`, the report on a multi-block grid has angles and growth of its lines. Raises InputError if
+    a gate names a quantity that the cells do not have.
     """
     solution, grid = result.solution, result.solution.grid
     counts = grid.blocks[0].counts if len(grid.blocks) == 1 else (None, None)
@@ -78,7 +77,7 @@ def reported(
 def made_by(
     member: Item[Any], solve: Callable[[Any], Result], criteria: Criteria | None
 ) -> tuple[Grid, Report]:
-    """Return the grid that `solve` makes of the content of `member`, and its report."""
+    """Return the grid that `solve` makes from the content of `member`, and its report."""
     return reported(member, solve(member.what), criteria)
 
 
@@ -86,13 +85,13 @@ def write_grids(
     batch: Batch, request: GridRequest, criteria: Criteria | None, *, history: str | None = None,
     assemble: bool = False,
 ) -> int:  # fmt: skip
-    """Make a grid from every boundary and return the exit code.
+    """Make a grid from each boundary of a batch and return the exit code.
 
     Parameters
     ----------
-    criteria : gates and profiles; the exit code is 1 if a grid fails them.
-    history : file to which cycles are written.
-    assemble : whether the inputs form one domain.
+    criteria : gates and profiles; if a grid fails them, the exit code is 1.
+    history : CSV file to which solver cycles are written.
+    assemble : whether all inputs together form one domain.
     """
     percentiles = criteria is not None and criteria.percentiles
     request = replace(request, threads=batch.engine.threads(request.threads), percentiles=percentiles)
@@ -119,5 +118,5 @@ def write_grids(
 
 
 def initial_grid(text: str | None) -> Grid | None:
-    """Return the grid of the file `text`, or None for None."""
+    """Return the grid in the file `text`; None for None."""
     return None if text is None else next(read_grids(text))

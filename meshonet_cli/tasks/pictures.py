@@ -14,7 +14,7 @@ from meshonet_cli.report.delivered import Delivered, delivered
 
 
 def plot_grids(batch: Batch, picture: Picture) -> int:
-    """Draw every grid, return the exit code. Raises InputError: not a picture; one picture for many grids."""
+    """Draw each grid and return the exit code. Raises InputError: no picture; one for several grids."""
     kind = picture_format(batch.files.output, batch.files.to_format).name
     leave_out_docstrings()
     read = partial(read_grids, fmt=batch.files.from_format)
@@ -30,7 +30,7 @@ def _drawn(item: Item[Grid], metric: str | None) -> tuple[Grid, Delivered]:
 
 
 def leave_out_docstrings() -> None:
-    """Let Matplotlib compose no docstrings when it is imported, which takes a fifth of a picture's time."""
+    """Import Matplotlib without its generated docstrings, which take a fifth of a picture's time."""
     if "matplotlib.figure" in sys.modules:
         return
     from matplotlib import artist

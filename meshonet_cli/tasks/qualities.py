@@ -29,13 +29,13 @@ def measure_grids(
     plot: str | None = None, html: str | None = None, per_cell: str | None = None,
     reynolds: float | None = None, length: float | None = None,
 ) -> int:  # fmt: skip
-    """Measure every grid of `inputs`, print the reports and return the exit code.
+    """Measure each grid of `inputs`, print the reports and return the exit code.
 
     Parameters
     ----------
-    compare, pairing : file of reference grids, and how they are matched.
-    summary : whether one table for all grids is printed.
-    plot, per_cell, html : files for pictures, metrics and the report.
+    compare, pairing : file with reference grids, and the rule that assigns grids to them.
+    summary : whether to print one table for all grids.
+    plot, per_cell, html : files for pictures, metrics of all cells, and the report page.
     reynolds, length : Reynolds number for y+, and its reference length.
     """
     gates, profiles = (criteria.gates, criteria.profiles) if criteria else ((), ())

@@ -28,7 +28,7 @@ def write_sweeps(
     batch: Batch, path: str | Revolution, section: Mapping[str, Any], settings: Sweep,
     criteria: Criteria | None, *, around: int | None = None,
 ) -> int:  # fmt: skip
-    """Write the volumes of sections swept along a path or about an axis; return the exit code."""
+    """Sweep sections along a path or about an axis, write the volumes, and return the exit code."""
     parameters = domain_parameters(shared(section, batch, criteria))
     res = parameters.pop("res")
     request = grid_request(res=None if res is None else _counts(res), **parameters)

@@ -31,7 +31,7 @@ VOLUME_NODES = 1_000_000
 def write_stacks(
     batch: Batch, parameters: Mapping[str, Any], criteria: Criteria | None, *, tip: Tip | None, surface: bool
 ) -> int:
-    """Write the volumes or surfaces of the stacks and return the exit code."""
+    """Make the volumes (or with `surface` the surfaces) of stacks, write them, and return the exit code."""
     chosen = shared(parameters, batch, criteria)
     if surface and criteria:
         raise InputError("{fail_on} and {profile} judge cells, and a surface has none", "leave them out")
@@ -57,7 +57,7 @@ def _surface(item: Item[Stack | Aircraft], parameters: Mapping[str, Any]) -> tup
 
 
 def shared(parameters: Mapping[str, Any], batch: Batch, criteria: Criteria | None) -> dict[str, Any]:
-    """Return `parameters`, with percentiles if the criteria need them, and with the threads of one worker."""
+    """Return `parameters` with the threads of a worker, and with percentiles if the criteria need them."""
     percentiles = criteria is not None and criteria.percentiles
     threads = batch.engine.threads(parameters.get("threads"))
     return {**parameters, "threads": threads, "percentiles": percentiles}

@@ -6,7 +6,7 @@ _OPTIONS = {
 
 
 def explained(error: Exception, name: str = "") -> str:
-    """Return the message for an `error` of the member `name`, in one or two lines."""
+    """Return the message, of one or two lines, about an `error` of the member called `name`."""
     from meshonet.geometry.errors import InputError, MeshonetError, NoValidGridError
 
     if isinstance(error, InputError):
@@ -26,7 +26,7 @@ def explained(error: Exception, name: str = "") -> str:
 
 
 def option(parameter: str) -> str:
-    """Return the option for a parameter.
+    """Return the command-line option for a parameter of the library.
 
     >>> option("far_field"), option("from_format")
     ('--far-field', '--from')
@@ -35,7 +35,7 @@ def option(parameter: str) -> str:
 
 
 def with_options(text: str) -> str:
-    """Return a message of the library with ``{parameters}`` replaced by options.
+    """Return a message of the library in which each ``{parameter}`` is replaced by its option.
 
     >>> with_options("the far field is cut off; set {far_field}")
     'the far field is cut off; set --far-field'

@@ -34,10 +34,10 @@ SAME_ERRORS = 3
 
 
 class Session:
-    """Prints messages, and keeps the largest exit code.
+    """Prints messages and keeps the largest exit code.
 
-    Tables and results for programs go to standard output, everything else to standard error. A terminal also
-    shows a line of progress.
+    Tables and JSON go to standard output, all else to standard error. A terminal also shows a line of
+    progress.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ class Session:
 
     @contextlib.contextmanager
     def member(self, label: str, source: str | None = None) -> Iterator[None]:
-        """Return a context that reports an error for the member `label` of `source`; the batch continues."""
+        """Return a context in which an error of the member `label` is reported, and the batch continues."""
         try:
             yield
         except (KeyboardInterrupt, GeneratorExit, BrokenPipeError):
@@ -82,7 +82,7 @@ class Session:
             self.fail(label, source or label, error, repeated=True)
 
     def fail(self, label: str, source: str, error: Exception, *, repeated: bool = False) -> None:
-        """Report a failed member; a `repeated` error, of many members, at most `SAME_ERRORS` times."""
+        """Report a failed member; an error `repeated` for several is printed `SAME_ERRORS` times at most."""
         from meshonet_cli.terminal.summary import MemberRow
 
         if self._line and not self.batch:
@@ -106,7 +106,7 @@ class Session:
             self.result({"input": source, "output": None, "error": line, "exit_code": code})
 
     def judge(self, row: MemberRow) -> None:
-        """Report the gates that a member has failed, and keep its row for the table."""
+        """Report the gates that a member fails, and keep its row for the table of verdicts."""
         self.rows.append(row)
         problems = row.judgement.problems if row.judgement else ()
         self.beyond += bool(problems)
@@ -115,11 +115,11 @@ class Session:
             self._write(f"gate not met: {row.label}: {with_options(problem)}")
 
     def warn(self, text: str) -> None:
-        """Print a message that is shown even with `quiet`."""
+        """Print a message, even with `quiet`."""
         self._write(f"warning: {text}")
 
     def written(self, report: Timed, path: str) -> None:
-        """Report a member with the output file `path`: in full if it is the only one, else in one line."""
+        """Report a member that was written to `path`: in full if it is the only one, else in one line."""
         report.output = None if report.left_out else path
         if report.warning:
             self.warn(report.warning)
@@ -142,7 +142,7 @@ class Session:
             self.judge(row)
 
     def show(self, report: Timed) -> None:
-        """Print a report that is the result of the command on standard output, unless `quiet`."""
+        """Print a report as the result of the command on standard output, unless `quiet` is set."""
         self.done += 1
         if self.as_json or not self.quiet:
             self.conclude(report)
@@ -155,23 +155,23 @@ class Session:
             self.print(total.lines())
 
     def note(self, text: str) -> None:
-        """Print a message, except with `quiet` or JSON."""
+        """Print a message, unless `quiet` or JSON is set."""
         if not (self.quiet or self.as_json):
             self._write(text)
 
     def result(self, facts: Mapping[str, Any]) -> None:
-        """Print one JSON object on standard output, without buffering."""
+        """Print a JSON object on standard output at once."""
         self.print(json.dumps(facts))
 
     def print(self, text: str) -> None:
-        """Print on standard output."""
+        """Print `text` on standard output."""
         with self._writing:
             if self._shown:
                 self._clear()
             print(quoted(text), flush=True)  # noqa: T201
 
     def check_output(self, output: str) -> None:
-        """Raise InputError if both results and JSON would go to standard output."""
+        """Raise InputError if both the results and JSON are to go to standard output."""
         self._stdout_is_taken = output == "-"
         if self.as_json and output == "-":
             raise InputError(
@@ -179,7 +179,7 @@ class Session:
             )
 
     def status(self, text: str) -> None:
-        """Show the current status on a terminal; it replaces the previous one."""
+        """Show `text` on a terminal in place of the previous status."""
         if self.live:
             self._text = text
             if self._line:
@@ -187,9 +187,9 @@ class Session:
             self._draw()
 
     def watch(self) -> None:
-        """Show the stage of a single input on a terminal, after one second.
+        """From one second on, show on a terminal which stage of a single input is in progress.
 
-        Nothing is shown with JSON, or if standard output is a pipe, whose reader may show a status too.
+        Nothing is shown with JSON, or if standard output is a pipe, since its reader may show a status too.
         """
         leads = os.environ.get("RANK", "0") == "0"  # of several processes under torchrun
         if self.live and leads and not (self.as_json or self.batch or self._line or _is_pipe(1)):
@@ -198,7 +198,7 @@ class Session:
             self._line = StageLine(self._draw, self._clear)
 
     def begin(self, name: str, count: int | None = None) -> None:
-        """Show the current member and the number of members, if known; stop if a signal requested it."""
+        """Show the current member, and the number of members if known; end if a signal requested it."""
         check()
         self.members += 1
         if self._line and self.batch:
@@ -217,7 +217,7 @@ class Session:
         return self.live
 
     def skip(self, name: str, path: str, remark: str = "") -> None:
-        """Report a member whose result exists."""
+        """Report a member that is skipped since its result exists."""
         self.skipped += 1
         self.note(f"{name} -> {path}: there already{remark}")
 

@@ -18,7 +18,7 @@ HELD = 1.0  # seconds to wait for a terminal that is held, at the most
 
 
 class StageLine:
-    """Calls `draw` five times per second, from one second after its start until its end, then `clear`."""
+    """Thread that calls `draw` five times per second, from one second after its start; `clear` at its end."""
 
     def __init__(self, draw: Callable[[], None], clear: Callable[[], None]) -> None:
         self._draw, self._clear = draw, clear
@@ -42,9 +42,9 @@ class StageLine:
             self._clear()
 
     def text(self) -> str:
-        """Return the line: elapsed time, stage, and progress, or `detail` for a stage without steps.
+        """Return the text of the line: elapsed time, stage and progress.
 
-        In the first second the line is only `detail`.
+        In the first second, it is only `detail`. A stage without steps has `detail` in place of the progress.
         """
         stage, now = self._stage, time.perf_counter()
         spent = now - self._begun

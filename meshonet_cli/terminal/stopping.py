@@ -16,9 +16,9 @@ _asked: list[BaseException] = []
 
 
 def install() -> None:
-    """Install handlers: SIGINT raises KeyboardInterrupt, SIGTERM and SIGHUP raise SystemExit.
+    """Install signal handlers, so that unfinished files are removed when a signal ends the program.
 
-    Unfinished files are then removed. A signal that was ignored at the start, as by nohup, stays ignored.
+    SIGINT raises KeyboardInterrupt, SIGTERM and SIGHUP raise SystemExit. Ignored signals stay ignored.
     """
     handlers = {"SIGINT": _interrupt, "SIGTERM": _terminate, "SIGHUP": _terminate}
     for name, handler in handlers.items():
@@ -28,13 +28,13 @@ def install() -> None:
 
 
 def hide_warnings() -> None:
-    """Show Python's warnings, which concern the source code, only with ``--debug``."""
+    """Hide Python's warnings, which concern the source code, unless ``--debug`` is given."""
     if not sys.warnoptions and "--debug" not in sys.argv:
         warnings.simplefilter("ignore")
 
 
 def check() -> None:
-    """Raise the exception of a signal that was dropped."""
+    """Raise the exception of a signal again, if one came whose exception was lost."""
     if _asked:
         raise _asked[-1]
 

@@ -23,19 +23,19 @@ LABELS = {
 
 
 def figures(quality: Quality) -> dict[str, float]:
-    """Return the values of the columns for a grid."""
+    """Return the values of a grid by column of the table."""
     angle = quality["max_angle"]
     return {"folded": quality.folded, "max_angle": angle.max, "mean_angle": angle.mean}
 
 
 def gates_not_met(judgement: Judgement | None) -> list[str]:
-    """Return the failed gates for JSON."""
+    """Return the failed gates as texts for JSON."""
     return [with_options(problem) for problem in judgement.problems] if judgement else []
 
 
 @dataclass(frozen=True)
 class MemberRow:
-    """A member of a batch with values by column; after an error there are no values."""
+    """A row of the table: a member and its values by column; a failed member has no values."""
 
     label: str
     figures: Mapping[str, float] = field(default_factory=dict)
@@ -43,20 +43,20 @@ class MemberRow:
 
     @property
     def verdict(self) -> str:
-        """One of `VERDICTS`, or empty for a grid that was not judged."""
+        """One of `VERDICTS`; empty if the grid was not judged."""
         return (self.judgement.verdict if self.judgement else "") if self.figures else "error"
 
 
 @dataclass(frozen=True)
 class BatchSummary:
-    """Values of many grids, and their verdicts if they are `judged`."""
+    """Table of the values of many grids, and of their verdicts if they are `judged`."""
 
     rows: Sequence[MemberRow]
     judged: bool = False
 
     @property
     def members(self) -> list[MemberRow]:
-        """The rows of grids."""
+        """Rows of the members that did not fail."""
         return [row for row in self.rows if row.figures]
 
     def as_json(self) -> dict[str, Any]:

@@ -8,7 +8,7 @@ _BAR_LENGTH = 24  # number of characters of a progress bar
 
 
 def aligned(rows: Sequence[Sequence[str]], left: int = 1) -> str:
-    """Return `rows` as lines with aligned columns, the first `left` to the left, the others to the right."""
+    """Return `rows` as aligned lines; the first `left` columns are flush left, the others flush right."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = []
     for row in rows:
@@ -18,7 +18,7 @@ def aligned(rows: Sequence[Sequence[str]], left: int = 1) -> str:
 
 
 def quoted(text: str) -> str:
-    r"""Return lines of text for a terminal, with escape sequences in file names made harmless.
+    r"""Return a text in which escape sequences (of file names) cannot control the terminal.
 
     >>> print(quoted("a\x1b[31m.dat\nb"))
     a\x1b[31m.dat
@@ -28,7 +28,7 @@ def quoted(text: str) -> str:
 
 
 def figure(value: float) -> str:
-    """Return a number in the format of tables.
+    """Return a number in the form that tables have.
 
     >>> figure(90.12345), figure(0.000123456), figure(1234567.0), figure(0.0)
     ('90.12', '0.0001235', '1.235e+06', '0')
@@ -37,12 +37,12 @@ def figure(value: float) -> str:
 
 
 def span(seconds: float) -> str:
-    """Return a time in seconds or milliseconds as text."""
+    """Return a computing time as text, in seconds or milliseconds."""
     return f"{seconds:.2f} s" if seconds >= 1 else f"{1e3 * seconds:.1f} ms"
 
 
 def duration(seconds: float) -> str:
-    """Return a remaining time as text.
+    """Return a remaining time as text, in seconds, minutes or hours.
 
     >>> duration(42.0), duration(600.0), duration(9000.0)
     ('42 s', '10 min', '2.5 h')
@@ -53,7 +53,7 @@ def duration(seconds: float) -> str:
 
 
 def bar(done: int, count: int) -> str:
-    """Return a bar of which `done` of `count` parts are filled.
+    """Return a progress bar that is filled to `done` of `count` parts.
 
     >>> bar(1, 4)
     '[######------------------]'

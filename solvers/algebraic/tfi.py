@@ -20,16 +20,16 @@ Four = tuple[Floats, Floats, Floats, Floats]
 
 
 def tfi(boundary: Boundary, blending: Blending = "arclength") -> Grid:
-    """Return the grid inside `boundary` by transfinite interpolation; it may have folded cells.
+    """Return the grid inside `boundary` by transfinite interpolation; its cells may be folded.
 
-    Edges S, N, W and E meet at corners a, b, c and d; s, n, w and e are parameters along them::
+    The edges S, N, W and E meet at corners a, b, c and d; s, n, w and e are parameters along them::
 
         x = (1-v) S_i + v N_i + (1-u) W_j + u E_j - (1-u)(1-v) a - u (1-v) b - u v c - (1-u) v d
         u = s_i + (n_i - s_i) v,    v = w_j + (e_j - w_j) u
 
-    `blending`: with ``linear`` the parameters are i / (ni - 1); with ``arclength`` fractions of the edge's
-    length, so that the spacing of the edges continues into the interior. Raises InputError: the blending is
-    unknown.
+    With the `blending` ``linear``, the parameters are i / (ni - 1). With ``arclength`` they are fractions of
+    the arc length of the edge, which continues its spacing into the interior. Raises InputError if the
+    blending is unknown.
     """
     edges = (boundary.south, boundary.north, boundary.west, boundary.east)
     facts = {"method": "tfi", "blending": blending}
@@ -38,20 +38,20 @@ def tfi(boundary: Boundary, blending: Blending = "arclength") -> Grid:
 
 @timed
 def solve(boundary: Boundary, *, blending: Blending = "arclength") -> Solution:
-    """Return the transfinite interpolation of `boundary` as a solution (`tfi`)."""
+    """Return the transfinite interpolation of `boundary` (see `tfi`) as a solution."""
     grid = tfi(boundary, blending)
     return Solution(grid, "tfi")
 
 
 def between(edges: Four, blending: Blending = "arclength") -> Floats:
-    """Return nodes (ni, nj, 2) between `edges` (n, 2): south, north, west, east; see `tfi`."""
+    """Return nodes (ni, nj, 2) by transfinite interpolation (`tfi`) of south, north, west, east (n, 2)."""
     nodes = planar_nodes(len(edges[0]), len(edges[2]))
     interpolate(nodes[..., 0], nodes[..., 1], edges, parameters(edges, blending))
     return nodes
 
 
 def parameters(edges: Four, blending: Blending) -> Four:
-    """Return, for each of the `edges` (n, 2) south, north, west, east, the parameters (n,), 0 to 1."""
+    """Return the parameters (n,), from 0 to 1, along each of the `edges` (n, 2): south, north, west, east."""
     if blending not in get_args(Blending):
         remedy = "use " + "/".join(get_args(Blending))
         raise InputError(f"blending {blending!r} is not known", remedy, parameter="blending")
@@ -63,14 +63,14 @@ def parameters(edges: Four, blending: Blending) -> Four:
 
 
 def interpolate(x: Floats, y: Floats, edges: Four, along: Four) -> None:
-    """Fill `x`, `y` (ni, nj) from `edges` (south, north, west, east); `along` are the edges' parameters."""
+    """Fill `x` and `y` (ni, nj) from the `edges` south, north, west, east; `along` are their parameters."""
     south, north, west, east = (np.ascontiguousarray(edge.T) for edge in edges)
     xs, ys = ((south[k], north[k], west[k], east[k]) for k in (0, 1))
     fill(x, y, xs, ys, along, threads_for(x.size))
 
 
 def arc_length_fraction(points: Floats) -> Floats:
-    """Return, at each point of polylines (..., n, 2), the arc length up to it as a fraction (..., n).
+    """Return the arc length up to each point of polylines (..., n, 2), as a fraction (..., n) of the whole.
 
     >>> arc_length_fraction(np.array([[0.0, 0.0], [3.0, 4.0], [3.0, 9.0]]))
     array([0. , 0.5, 1. ])

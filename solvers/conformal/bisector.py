@@ -16,10 +16,10 @@ SWEEPS = 3  # over the corners, which influence each other a little
 
 
 def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> tuple[Floats, Floats]:
-    """Return weights (n, corners) along the wall and, for each corner, a shift of phi, which they multiply.
+    """Return weights (n, corners) along the wall, and for each corner a shift of phi that they multiply.
 
-    Shifted in the strip by these products, the first grid line at each corner bisects its angle in the plane.
-    `wall` (n,) are nodes in the plane, counter-clockwise, and `corners` indices into it.
+    phi is the coordinate along the wall in the strip. After the shift, the first line at each corner bisects
+    its angle in the plane. `wall` (n,) are nodes in the plane, counter-clockwise, `corners` indices of them.
     """
     n, step = len(wall), 2.0 * np.pi / len(wall)
     between = np.subtract.outer(corners, corners) % n
@@ -42,6 +42,6 @@ def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...
 
 
 def fading(eta: Floats, first: float) -> Floats:
-    """Return the fraction of a shift of phi that applies at `eta`: 1 where eta is `first`, 0 at walls."""
+    """Return which fraction of a shift of phi applies at `eta`: 1 if eta equals `first`, 0 at walls."""
     cells = eta / first
     return np.asarray(cells * exp((1.0 - cells) / CELLS) * (1.0 - eta) / (1.0 - first))

@@ -17,7 +17,7 @@ WORTH = 3  # times as many grid nodes as Chebyshev points: fewer are evaluated t
 
 
 def points(n: int) -> Floats:
-    """Return n Chebyshev points of the second kind in [0, 1], ascending, including both ends."""
+    """Return n Chebyshev points of the second kind in [0, 1], ascending, with both ends."""
     return np.asarray(0.5 - 0.5 * cos(np.pi * np.arange(n) / (n - 1)))
 
 
@@ -29,7 +29,7 @@ def weights(n: int) -> Floats:
 
 
 def barycentric(nodes: Floats, weights: Floats, x: Floats) -> Floats:
-    """Return the matrix (len(nodes), len(x)) that interpolates values at `nodes` to `x`; exact at nodes.
+    """Return the matrix (len(nodes), len(x)) of polynomial interpolation from values at `nodes` to `x`.
 
     >>> points(5) ** 4 @ barycentric(points(5), weights(5), np.array([0.0, 0.3]))
     array([0.    , 0.0081])
@@ -45,10 +45,10 @@ def barycentric(nodes: Floats, weights: Floats, x: Floats) -> Floats:
 
 
 class Panels(NamedTuple):
-    """Consecutive panels along eta: panel k covers the grid levels from ``ends[k]`` to ``ends[k + 1]``.
+    """Consecutive intervals of eta: panel k covers the grid levels from ``ends[k]`` to ``ends[k + 1]``.
 
-    `eta` (panels NODES,) are the points of the panels. The value at a level is the product of
-    the values on its panel and its column of `matrix` (NODES, levels). Without panels, `ends` has one entry.
+    `eta` (panels NODES,) are the points of the panels. The value at a level is the product of values at the
+    points of its panel and its column of `matrix` (NODES, levels). Without panels, `ends` has one entry.
     """
 
     ends: list[int]
@@ -57,12 +57,12 @@ class Panels(NamedTuple):
 
 
 def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> Panels:
-    """Return panels that cover the levels `first` to `last` - 1 of `eta`; none unless they save work.
+    """Return panels that cover the levels `first` to `last` - 1 of `eta`; none if they would not save work.
 
-    `eta` (nj,) ascends from 0 at the wall to 1; `height` is the difference of psi between wall and far field,
-    and `spread` the variation of psi along the wall. Maps to the plane are singular only at the wall. On a
-    panel as long as its distance from the wall, `NODES` points are therefore exact to (3 + sqrt(8))^-NODES =
-    6e-13.
+    `eta` (nj,) ascends from 0 at the wall to 1. `height` is the difference of psi between wall and far field,
+    and `spread` the variation of psi along the wall. The map to the plane is singular only at the wall. On a
+    panel as long as its distance from the wall, `NODES` points therefore have an error of (3 +
+    sqrt(8))^-NODES = 6e-13.
     """
     ends: list[int] = []
     points, matrices = [np.empty(0)], [np.empty((NODES, 0))]

@@ -24,10 +24,10 @@ Shift: TypeAlias = tuple[Floats, Callable[[Floats], Floats]]
 
 
 class StripGrid:
-    """A solution in the strip, the conformal image of the domain, at the nodes of one grid.
+    """A solution in the strip (the conformal image of the domain), to be evaluated at the nodes of a grid.
 
-    `c` (2 MODES + 1, LEVELS) are Fourier modes of F = w - i theta at the Chebyshev points. `wall` and `far`
-    (n,) are F at the nodes of the two walls; `eta` (nj,) ascends from 0 to 1.
+    `c` (2 MODES + 1, LEVELS) are the Fourier modes of F = w - i theta at the Chebyshev points. `wall` and
+    `far` (n,) are F at the nodes of wall and far field. `eta` (nj,) ascends from 0 to 1.
     """
 
     def __init__(self, c: Complexes, wall: Complexes, far: Complexes, eta: Floats) -> None:
@@ -42,7 +42,7 @@ class StripGrid:
         self._panels = panels(eta, height, spread, 1, nj - outer)
 
     def at(self, rows: Sequence[int], j: int) -> Complexes:
-        """Return w at nodes (rows, j) near the wall, without shifts."""
+        """Return w at the nodes with indices `rows` on the level `j` near the wall, without shifts."""
         theta = self.theta[list(rows)]
         low = product(self._c, interpolation(self.eta[j : j + 1].tobytes())[:, 0])
         k, high = self._near.at(float(self.eta[j]))
@@ -52,12 +52,12 @@ class StripGrid:
         return np.asarray(F + 1j * theta)
 
     def fill(self, lift: Lift, out: Floats, axis: Axis | None = None, shift: Shift | None = None) -> bool:
-        """Map the grid, except walls, to the plane (`out`: (n + 1, nj, 2)); return whether it is finite.
+        """Map the grid, except its walls, to the plane (`out`: (n + 1, nj, 2)); return whether it is finite.
 
-        `lift` is the conformal map. The last row repeats the first bitwise. With an `axis`, rows i and n - i
-        are mirror images. A `shift` is added to phi. The points of a row are ::
+        `lift` is the conformal map from the strip to the plane. The last row repeats the first bitwise. With
+        an `axis`, rows i and n - i are mirror images. A `shift` is added to phi. A row has the points ::
 
-            levels 1 .. begin - 1 | panels' points | levels end .. nj - 2
+            levels 1 .. begin - 1 | points of the panels | levels end .. nj - 2
         """
         n, (ends, points, matrix) = len(self.theta), self._panels
         begin, far = ends[0], self.eta[ends[-1] : -1]

@@ -18,18 +18,18 @@ FEWEST = 256  # columns
 
 
 def columns(modes: Complexes) -> Floats:
-    """Return values f (Q, 2, width) at Q angles, whose windowed sums equal the sums of Fourier modes.
+    """Return values f (Q, 2, width) at Q angles, of which windowed sums give m sums of Fourier modes.
 
-    `modes` (m, 2 K + 1) are in the order k = 0 .. K, -K .. -1; Q is a power of two above 4 K. A sum at theta
+    `modes` (m, 2 K + 1) have the order k = 0 .. K, -K .. -1. Q is a power of two above 4 K. The sum at theta
     has `TAPS` terms::
 
         sum_k c_k exp(i k theta) = sum_q w(theta - theta_q) f_q,      f_q = sum_k c_k / v_k exp(i k theta_q)
         w(x) = exp(b (sqrt(1 - x^2) - 1)),  |x| < 1,  x in half windows
         v_k = sum_q w(theta_q) exp(-i k theta_q)
 
-    The error is about exp(-pi TAPS sqrt(1/2)) = 3e-14 of the largest mode. Barnett, Magland & af Klinteberg,
-    SIAM J. Sci. Comput. 41 (2019) C479. Real parts precede imaginary parts, columns from m on are zero; the
-    width is a multiple of `LANES`.
+    The error is about exp(-pi TAPS sqrt(1/2)) = 3e-14 of the largest mode. Real parts precede imaginary
+    parts; columns from m on are zero; `width` is a multiple of `LANES`. Barnett, Magland & af Klinteberg,
+    SIAM J. Sci. Comput. 41 (2019) C479.
     """
     count, wide = len(modes), -(-len(modes) // LANES) * LANES
     highest = modes.shape[1] // 2

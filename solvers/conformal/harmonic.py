@@ -13,10 +13,10 @@ FAR = 37.0  # exp(-37) is the precision of a double: modes that have decayed so 
 
 
 def extend(boundary: Boundary) -> Floats:
-    """Return the nodes (ni, nj, 2) of the harmonic extension of a `boundary`, whose nodes are kept.
+    """Return the nodes (ni, nj, 2) of the harmonic extension of a `boundary`, whose own nodes are kept.
 
-    eta starts at the side with the coefficients. a, of a rectangle, is height / length by the lengths of
-    sides; T, of a ring, is log(outer length / inner length)::
+    A sum over the sides adds series in sin or exp with the Fourier coefficients b_k or c_k of each side. eta
+    is 0 at this side. a is height / length of a rectangle, T is log(outer length / inner length) of a ring::
 
         quad   corners, bilinear + sum over sides, k of b_k sin(k pi xi) sinh(k pi a (1 - eta)) / sinh(k pi a)
         o      means, linear + sum over walls, k of c_k exp(2 pi i k xi) sinh(k T (1 - eta)) / sinh(k T)

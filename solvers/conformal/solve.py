@@ -41,12 +41,12 @@ def solve(
     model: str | None = None,
     substitute: Callable[[Boundary, str], Solution | None] | None = None,
 ) -> list[Solution]:
-    """Return a grid inside each O boundary; its boundary nodes are bitwise those of the boundary.
+    """Return a grid inside each O boundary; the boundary nodes are bitwise kept.
 
-    `polish`: number of Picard iterations; `correction`: returns a term that is added to the harmonic
-    extension, for all boundaries at once; `model`: name of the network that computes it; `substitute`: makes
-    the grid of a boundary without a conformal map, from the boundary and the reason; if `substitute`
-    returns None, the elliptic solver is used.
+    `polish` is the number of Picard iterations. `correction` returns a term for all boundaries that is added
+    to their harmonic extensions; `model` is the name of the network that computes it. If a boundary has no
+    conformal map, `substitute` makes its grid from the boundary and the reason. If that returns None, or is
+    not given, the elliptic solver makes the grid.
     """
     across()  # made once a process: no part of a grid's time
     begun = time.perf_counter()
@@ -66,9 +66,9 @@ def solve(
 
 
 def conformal(boundary: Boundary, *, polish: Polish = "auto") -> Solution:
-    """Return the grid inside an O boundary by Picard iteration in the conformal image of the domain, a strip.
+    """Return the grid inside an O boundary by Picard iteration in the strip, a conformal image of the domain.
 
-    Raises InputError: a boundary of another topology.
+    Raises InputError if the boundary has another topology.
     """
     if boundary.topology != "o":
         what = f"method conformal makes o grids, and this boundary is {boundary.topology}"

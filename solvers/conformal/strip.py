@@ -29,7 +29,7 @@ np.linalg.eig(d2[1:-1, 1:-1])``, ``np.save(EIGENVECTORS, np.vstack([w, v, np.lin
 
 @dataclass(frozen=True)
 class Across:
-    """The Chebyshev points across the strip and their derivative matrices."""
+    """Chebyshev points across the strip, and the matrices of derivatives there."""
 
     s: Floats
     eta: Floats
@@ -46,7 +46,7 @@ class Across:
 
 @lru_cache(maxsize=1)
 def across() -> Across:
-    """Return the discretisation across the strip, which is computed once in about a millisecond."""
+    """Return the discretisation across the strip, which is computed only once."""
     n = LEVELS - 1
     x = elementary.cos(np.pi * np.arange(n + 1) / n)
     c = np.r_[2.0, np.ones(n - 1), 2.0] * (1.0 - 2.0 * (np.arange(n + 1) % 2))
@@ -70,18 +70,18 @@ def across() -> Across:
 
 @lru_cache(maxsize=8)
 def interpolation(eta: bytes) -> Floats:
-    """Return the (LEVELS, n) matrix from values at the Chebyshev points to values at `eta`; it is read-only.
+    """Return the matrix (LEVELS, n) of interpolation from the Chebyshev points to `eta`; it is read-only.
 
-    `eta` are the bytes of an array (n,).
+    `eta` are the bytes of an array (n,), as a key of the cache.
     """
     s = elementary.log1p(np.frombuffer(eta) * math.expm1(CLUSTERING)) / CLUSTERING
     return read_only(barycentric(across().s, weights(LEVELS), s))
 
 
 def modes(F: Any, xp: Any = np) -> Any:
-    """Return Fourier coefficients (..., 2 MODES + 1) of F (..., n) for k = 0, 1 .. MODES, -MODES .. -1.
+    """Return the Fourier modes (..., 2 MODES + 1) of samples F (..., n), k = 0, 1 .. MODES, -MODES .. -1.
 
-    Modes that n samples do not resolve are zero. `xp` is the module of the array F, numpy or torch.
+    Modes that n samples cannot resolve are zero. F is an array of numpy or torch; `xp` is that module.
     """
     n = F.shape[-1]
     c, kept = xp.fft.fft(F) / n, min(MODES, (n - 1) // 2)
@@ -90,16 +90,16 @@ def modes(F: Any, xp: Any = np) -> Any:
 
 
 def wavenumbers(like: Any = None, xp: Any = np) -> Any:
-    """Return k in the order of `modes`, as an array of the same type as `like`."""
+    """Return k in the order of `modes`, as an array of the same kind as `like`."""
     k = np.concatenate([np.arange(MODES + 1.0), np.arange(-MODES, 0.0)])
     return k if like is None else array_like(k, like, xp)
 
 
 def decay(k: Any, T: Any, eta: Any, xp: Any = np) -> tuple[Any, Any]:
-    """Return factors (..., len(k), len(eta)) by which mode k of the wall, and of the far field, decays.
+    """Return by which factors (..., len(k), len(eta)) mode k of the wall, and of the far field, decays.
 
     At eta they are sinh(kT(1-eta))/sinh(kT) and sinh(kT eta)/sinh(kT), computed without overflow. T, the
-    height of the strip, is a number or (..., 1, 1).
+    height of the strip, is a number or has the shape (..., 1, 1).
     """
     k, exp = abs(k)[:, None], functions_of(xp).exp
     flat = k == 0
@@ -111,7 +111,7 @@ def decay(k: Any, T: Any, eta: Any, xp: Any = np) -> tuple[Any, Any]:
 
 
 def harmonic(wall: Any, far: Any, eta: Floats, xp: Any = np) -> Any:
-    """Return modes (..., 2 MODES + 1, len(eta)) of a harmonic function, from those on `wall` and `far`."""
+    """Return modes (..., 2 MODES + 1, len(eta)) of a harmonic function from those at `wall` and `far`."""
     count, T = MODES + 1, (far - wall)[..., :1, None].real
     k = wavenumbers(wall, xp)[:count]  # k and -k decay alike
     near, away = decay(k, T, array_like(eta, wall, xp), xp)
@@ -121,13 +121,13 @@ def harmonic(wall: Any, far: Any, eta: Floats, xp: Any = np) -> Any:
 
 
 def to_columns(c: Any, xp: Any = np) -> Any:
-    """Return samples at `COLUMNS` equal steps of theta of the functions with modes c (..., 2 MODES + 1)."""
+    """Return samples, at `COLUMNS` equal steps of theta, of functions with the modes c (..., 2 MODES + 1)."""
     zeros = xp.zeros((*c.shape[:-1], COLUMNS - 2 * MODES - 1), dtype=c.dtype, device=c.device)
     return xp.fft.ifft(xp.concatenate([c[..., : MODES + 1], zeros, c[..., MODES + 1 :]], -1), norm="forward")
 
 
 def from_columns(values: Any, xp: Any = np) -> Any:
-    """Return Fourier modes (..., 2 MODES + 1) of samples at `COLUMNS` equal steps of theta."""
+    """Return the modes (..., 2 MODES + 1) of functions from samples at `COLUMNS` equal steps of theta."""
     spectrum = xp.fft.fft(values) / COLUMNS
     return xp.concatenate([spectrum[..., : MODES + 1], spectrum[..., -MODES:]], -1)
 
@@ -135,17 +135,17 @@ def from_columns(values: Any, xp: Any = np) -> Any:
 def picard(
     c: Complexes, steps: int, settled: float = 0.0, diverged: float = np.inf
 ) -> tuple[Complexes, list[float]]:
-    """Return the Fourier modes of F after at most `steps` Picard steps, and F's largest change in each step.
+    """Return the modes of F after at most `steps` Picard steps, and the largest change of F in each step.
 
-    A grid in the strip is w(theta, eta) = psi + i phi; F = w - i theta is periodic in theta (2 pi). The
-    operator that a step inverts has the coefficients T^2, 0 and 1 of a uniform strip of height T::
+    A grid in the strip is w(theta, eta) = psi + i phi; F = w - i theta has the period 2 pi in theta. A step
+    inverts the operator with the coefficients T^2, 0 and 1 of a uniform strip of height T in place of::
 
         alpha w_tt - 2 beta w_te + gamma w_ee = 0
         alpha = |w_e|^2,  beta = Re(conj(w_t) w_e),  gamma = |w_t|^2
 
-    The iteration ends after a step in which the change is below `settled` or at least `diverged`; a change
-    that is not finite counts as infinite. `c` (2 MODES + 1, LEVELS) are the modes at the Chebyshev points;
-    the modes at the two walls do not change.
+    The iteration ends after a step whose change is below `settled` or at least `diverged`; a change that is
+    not finite counts as infinite. `c` (2 MODES + 1, LEVELS) are the modes at the Chebyshev points. The modes
+    at the two walls do not change.
     """
     T = float((c[0, -1] - c[0, 0]).real)
     parts, grid = np.stack([c.real, c.imag]), across()

@@ -21,7 +21,7 @@ CORNER = np.radians(85.0)  # turn at a node, trailing edge aside, that makes a b
 
 
 class StripWalls(NamedTuple):
-    """The images, in the strip, of the wall of a body and of the far field; n = ni - 1."""
+    """The images in the strip of the wall of a body and of the far field; n = ni - 1."""
 
     lift: Lift  # maps the strip to the plane
     wall: Complexes  # (n,) F = w - i theta, periodic in theta, at the nodes of the wall
@@ -34,7 +34,7 @@ class StripWalls(NamedTuple):
 
 
 def walls(boundary: Boundary) -> StripWalls:
-    """Return the walls of an O boundary, mapped to a strip. Raises InputError: no conformal map exists."""
+    """Map wall and far field of an O boundary to a strip. Raises InputError if there is no conformal map."""
     z, far = mirrored(boundary.south[:-1]), mirrored(boundary.north[:-1])
     hand, (point, direction) = handedness(z, far)
     # near the origin: far from it the map's branch points are subject to cancellation
@@ -48,12 +48,12 @@ def walls(boundary: Boundary) -> StripWalls:
 
 
 def is_rough(body: StripWalls) -> bool:
-    """Return whether the strip hardly resolves the uneven wall spacing, so that cells may fold.
+    """Return whether the strip hardly resolves an uneven spacing of the wall, so that cells may fold.
 
-    The sum of the amplitudes, in radians, of Fourier modes beyond `MODES` / 2 is compared with `SHARPEST` and
-    `ROUGHEST`. The sum is at most 0.013 for airfoils, or 0.06 with nodes evenly spaced around the leading
-    edge. It is at least 0.02 for polygons, and 0.01 for a square far field. Raises InputError: the strip does
-    not resolve the wall.
+    The criterion is the sum of the amplitudes, in radians, of Fourier modes beyond `MODES` / 2. Its limits
+    are `SHARPEST` and `ROUGHEST`. It is at most 0.013 for airfoils, or 0.06 if nodes are evenly spaced around
+    the leading edge. It is at least 0.02 for polygons, and 0.01 for a square far field. Raises InputError if
+    the strip does not resolve the wall or the far field.
     """
     n = len(body.wall)
     k = np.minimum(np.arange(n), n - np.arange(n))
@@ -68,7 +68,7 @@ def is_rough(body: StripWalls) -> bool:
 
 
 def sharp_turns(body: StripWalls) -> tuple[int, ...]:
-    """Return the indices of trailing corners, then of sharp turns, where grid lines may cross the wall."""
+    """Return the node indices of trailing corners, then of sharp turns where lines may cross the wall."""
     others = set(np.flatnonzero(_turn(body) > SHARP_TURN).tolist()) - set(body.corners)
     return (*body.corners, *sorted(others))
 

@@ -22,13 +22,12 @@ FLAT = 1e-9  # largest deviation from a line or plane, over its extent, of a sid
 
 @dataclass(frozen=True, eq=False)
 class Field:
-    """Displacements interpolated from motions and rotations of boundary nodes by inverse-distance weighting.
+    """Displacements, interpolated from boundary nodes (sources) by inverse-distance weighting.
 
-    A source k is a boundary node that moves from w_k to w_k' and rotates by R_k, or stays. The displacement
-    at x is the weighted mean of d_k(x) = w_k' + R_k (x - w_k) - x over all sources. The weights are A_k (r^-2
-    + near² r^-4) in the plane and A_k (r^-3 + near² r^-5) in three dimensions. A_k is the length or area that
-    belongs to node k, and r the distance of this node from x; within the distance `near`, the second term is
-    larger.
+    Source k moves from w_k to w_k' and rotates by R_k, or stays. The displacement at x is the weighted mean
+    of d_k(x) = w_k' + R_k (x - w_k) - x over all sources. The weights are A_k (r^-2 + near² r^-4) in the
+    plane and A_k (r^-3 + near² r^-5) in three dimensions. A_k is the length or area that belongs to source k,
+    r the distance from its old position to x. Within the distance `near`, the second term is larger.
     """
 
     sources: Indices  # (k,) node indices of the sources
@@ -39,22 +38,22 @@ class Field:
 
     @classmethod
     def of(cls, nodes: Floats, sources: Indices, areas: Floats, near: float, points: Indices) -> Self:
-        """Return the field of `sources` (k,) at `points` (m,), which are both indices into `nodes` (n, d).
+        """Return the field of `sources` (k,) at `points` (m,), both given as indices into `nodes` (n, d).
 
-        `areas` (n,) are the lengths or areas of the nodes.
+        `areas` (n,) are the lengths or areas that belong to the nodes.
         """
         places = np.ascontiguousarray(nodes[sources].T)
         where = np.ascontiguousarray(nodes[points].T)
         return cls(sources, places, np.ascontiguousarray(areas[sources]), near, where)
 
     def blended(self, motions: Floats) -> Floats:
-        """Return the displacements (m, d) of the points for `motions` (d + d², k), the result of `affine`."""
+        """Return the displacements (m, d) of the points; `motions` (d + d², k) are a result of `affine`."""
         moved = np.empty_like(self.points)
         blend_motions(self.places, self.areas, motions, self.near, self.points, thread_count(), moved)
         return moved.T
 
     def transposed(self, pull: Floats) -> Floats:
-        """Return the gradient (6, k) of Σ pull · displacement by the planar motions; `pull` is (m, 2)."""
+        """Return the gradient (6, k) of Σ pull · displacement by planar motions; `pull` is (m, 2)."""
         gathered = np.empty((6, len(self.areas)))
         force = np.ascontiguousarray(pull.T)
         blend_transposed(self.places, self.areas, self.near, self.points, force, gathered)
@@ -63,7 +62,7 @@ class Field:
 
 @dataclass(frozen=True, eq=False)
 class Follow:
-    """The map from new positions of moved boundary nodes to new positions of all nodes of a grid."""
+    """Map from new positions of moved boundary nodes to new positions of all nodes of a grid."""
 
     table: NodeTable
     sources: Sources
@@ -74,7 +73,7 @@ class Follow:
 
     @classmethod
     def of(cls, table: NodeTable, moved: Bools) -> Self:
-        """Return the map for the nodes of `table`, of which `moved` (n,) have prescribed positions."""
+        """Return the map for the nodes of `table`; mask `moved` (n,): nodes with prescribed positions."""
         nodes, sources = table.nodes, sources_of(table, moved)
         near = _near(nodes[moved], nodes[sources.fixed])
         held = np.union1d(np.flatnonzero(moved), sources.fixed)
@@ -87,13 +86,13 @@ class Follow:
         return cls(table, sources, turning, slide, field, inner)
 
     def nodes_to(self, to: Floats) -> Floats:
-        """Return the new positions (n, d) of all nodes if the moved nodes go to `to` (n, d)."""
+        """Return the new positions (n, d) of all nodes, if moved nodes go to their rows of `to` (n, d)."""
         there = self.boundary_to(to)
         there[self.inner] += self.field.blended(self._motions(self.field, there))
         return there
 
     def boundary_to(self, to: Floats) -> Floats:
-        """Return all nodes (n, d): moved nodes at `to` (n, d), sliding nodes displaced, others unchanged."""
+        """Return all nodes (n, d): moved ones at `to` (n, d), sliding ones displaced, others unchanged."""
         nodes = self.table.nodes
         there = np.where(self.sources.moved[:, None], to, nodes)
         if self.slide is not None:
@@ -111,7 +110,7 @@ class Follow:
         return affine(old[at], there[at], turns)
 
     def along_sides(self, move: Floats, there: Floats) -> Floats:
-        """Return `move` (n, d), changed in place, without components normal to flat sliding sides."""
+        """Return `move` (n, d), changed in place: without components normal to sides that are flat."""
         for piece in self.sources.sliding:
             normal = normal_of(self.table, piece, there)
             if normal is not None:
@@ -131,7 +130,7 @@ def _near(moved: Floats, fixed: Floats) -> float:
 
 
 def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
-    """Return the unit normal (d,) of a side that is flat before and after the deformation, or None."""
+    """Return the unit normal (d,) of a side, or None unless it is flat before and after (`there`)."""
     nodes, after = (each[piece.numbers.ravel()] for each in (table.nodes, there))
     centre = nodes.mean(axis=0)
     _, size, ways = singular_values(nodes - centre)
@@ -141,7 +140,7 @@ def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
 
 
 def sliding_notes(follow: Follow, to: Floats) -> tuple[str, ...]:
-    """Return notes about fixed sides that touch moved walls; `to` (n, d) are new positions of moved nodes."""
+    """Return notes on fixed sides that touch moved walls; moved nodes go to their rows of `to` (n, d)."""
     notes, table = [], follow.table
     for piece in follow.sources.sliding:
         if (to[piece.numbers] == table.nodes[piece.numbers]).all():

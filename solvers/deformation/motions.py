@@ -17,7 +17,7 @@ from meshonet.geometry.polygon.corners import angle_between
 
 @dataclass(frozen=True, eq=False)
 class Turning:
-    """Weights for the rotation angle of each node of a planar wall, a mean over the edges at the node."""
+    """Rotation angle of each node of a planar wall: a weighted mean over the edges at the node."""
 
     edges: Indices  # (m, 2) node indices of the edges
     share: Floats
@@ -25,13 +25,13 @@ class Turning:
 
     @classmethod
     def of(cls, nodes: Floats, edges: Indices) -> Self:
-        """Return the weights of `edges` (m, 2) between `nodes` (n, 2)."""
+        """Return the weights for the `edges` (m, 2) of a wall, given as indices into `nodes` (n, 2)."""
         nearness = 1.0 / np.maximum(norms(nodes[edges[:, 1]] - nodes[edges[:, 0]]), 1e-300)
         total = np.bincount(edges.ravel(), np.repeat(nearness, 2), len(nodes))
         return cls(edges, nearness[:, None] / total[edges])
 
     def angles(self, old: Floats, new: Floats) -> Floats:
-        """Return by which angle (n,), in radians, the wall turns at each node from `old` to `new` (n, 2)."""
+        """Return the angle (n,) in radians by which each wall node turns from `old` to `new` (n, 2)."""
         before, after = (nodes[self.edges[:, 1]] - nodes[self.edges[:, 0]] for nodes in (old, new))
         return self._at_nodes(angle_between(before, after), len(old))
 
@@ -40,12 +40,12 @@ class Turning:
         return np.bincount(self.edges.ravel(), shares, n).astype(np.float64, copy=False)
 
     def angles_along(self, new: Floats, moves: Floats) -> Floats:
-        """Return the derivatives (n,) of `angles` in the direction `moves` (n, 2), at nodes `new` (n, 2)."""
+        """Return the derivatives (n,) of `angles`, at nodes `new` (n, 2), in the direction `moves` (n, 2)."""
         slope, way = self._slopes(new), moves[self.edges[:, 1]] - moves[self.edges[:, 0]]
         return self._at_nodes((slope * way).sum(axis=1), len(new))
 
     def angles_transposed(self, new: Floats, pull: Floats) -> Floats:
-        """Return the gradient (n, 2) of Σ pull · angles with respect to the nodes `new`; `pull` is (n,)."""
+        """Return the gradient (n, 2) of Σ pull · angles by the nodes `new` (n, 2); `pull` is (n,)."""
         onto = self._slopes(new) * (self.share * pull[self.edges]).sum(axis=1)[:, None]
         gathered = np.zeros_like(new)
         np.add.at(gathered, self.edges[:, 1], onto)
@@ -59,13 +59,13 @@ class Turning:
 
 
 def turns_in_plane(angles: Floats) -> Floats:
-    """Return R - 1 (n, 2, 2) for rotation matrices R by `angles` (n,), accurate also for small angles."""
+    """Return R - 1 (n, 2, 2) for the rotation matrices R of `angles` (n,), accurate for small angles too."""
     sine, less = sin(angles), -2.0 * sin(0.5 * angles) ** 2
     return np.stack([np.stack([less, -sine], axis=-1), np.stack([sine, less], axis=-1)], axis=-2)
 
 
 def turns_in_space(quads: Indices, old: Floats, new: Floats) -> Floats:
-    """Return R - 1 (n, 3, 3) for rotations R from `old` to `new` (n, 3) at the nodes of `quads` (m, 4)."""
+    """Return R - 1 (n, 3, 3) for the rotation R of each node of `quads` (m, 4) from `old` to `new` (n, 3)."""
     before, after = _frames(old[quads]), _frames(new[quads])
     whole = product(after, inverse(before))
     total = np.zeros((len(old), 3, 3))
@@ -86,10 +86,10 @@ def _frames(corners: Floats) -> Floats:
 
 
 def affine(places: Floats, moved: Floats, turns: Floats) -> Floats:
-    """Return the coefficients a (d) and B (d²), stacked (d + d², n), of the displacement a + B x by a node.
+    """Return a (d) and B (d²), stacked as (d + d², n): each node displaces a point x by a + B x.
 
-    x is the point that is displaced. `places` and `moved` (n, d) are the old and the new positions of the
-    nodes, `turns` (n, d, d) is R - 1.
+    `places` and `moved` (n, d) are the old and new positions of the nodes, `turns` (n, d, d) is R - 1 for
+    their rotations R.
     """
     shift = moved - places - product(turns, places[:, :, None])[:, :, 0]
     return np.ascontiguousarray(np.concatenate([shift.T, turns.reshape(len(places), -1).T]))

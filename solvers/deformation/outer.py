@@ -21,9 +21,9 @@ _BACKWARDS = ("north", "west")  # sides with the domain on the right, in the ord
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """A part of the outer boundary: its patch, and the indices (n,) or (m, n) of its nodes.
+    """A piece of the outer boundary: its patch and the indices (n,) or (m, n) of its nodes.
 
-    In the plane the domain is on the left of a piece.
+    In the plane, the nodes are ordered so that the domain is on the left.
     """
 
     patch: Patch
@@ -32,7 +32,7 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class NodeTable:
-    """All nodes of a grid; nodes shared by blocks occur once."""
+    """All nodes of a grid; a node shared by several blocks occurs once."""
 
     grid: Grid
     nodes: Floats  # (n, d) coordinates of the nodes
@@ -41,13 +41,13 @@ class NodeTable:
 
     @classmethod
     def of(cls, grid: Grid) -> Self:
-        """Return the table of a planar grid or of a volume. Raises InputError: a surface."""
+        """Return the nodes of a planar grid or a volume. Raises InputError if the grid is a surface."""
         if grid.form == "surface":
             raise InputError("a surface has no cells that could follow it", "give a planar grid or a volume")
         return cls(grid, *node_table(grid.blocks, grid.connections))
 
     def with_nodes(self, nodes: Floats) -> tuple[Block, ...]:
-        """Return the blocks of the grid with the coordinates `nodes` (n, d)."""
+        """Return the blocks of the grid with the node coordinates `nodes` (n, d)."""
         planes = np.moveaxis(nodes, -1, 0)
         blocks = []
         for number in self.numbers:
@@ -57,7 +57,7 @@ class NodeTable:
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """The pieces of the whole outer boundary, including periodic sides, which have no name."""
+        """Pieces of the whole outer boundary; those on periodic sides have no name."""
         periodic = [
             Patch("", side, *span[0], across=span[1] if span[1:] else None, block=block)
             for each in self.grid.connections
@@ -85,7 +85,7 @@ class NodeTable:
 
 
 def lines_of(pieces: Sequence[Piece]) -> list[Indices]:
-    """Return planar pieces joined to polylines of node indices (n,); closed ones repeat the first node."""
+    """Join planar pieces to polylines of node indices (n,); a closed one repeats its first node."""
     left = [piece.numbers for piece in pieces]
     lines = []
     while left:
@@ -104,7 +104,7 @@ def lines_of(pieces: Sequence[Piece]) -> list[Indices]:
 
 
 def elements_of(pieces: Sequence[Piece], dimension: int) -> Indices:
-    """Return the edges (m, 2) of planar pieces, or the quadrilaterals (m, 4) of pieces of volumes."""
+    """Return the edges (m, 2) of pieces in the plane, or the quadrilaterals (m, 4) of pieces of volumes."""
     if dimension == 2:
         parts = [np.stack([p.numbers[:-1], p.numbers[1:]], axis=1) for p in pieces]
     else:
@@ -113,7 +113,7 @@ def elements_of(pieces: Sequence[Piece], dimension: int) -> Indices:
 
 
 def first_heights(grid: Grid, pieces: Sequence[Piece]) -> Floats:
-    """Return the first-cell heights (n,) at all nodes of `pieces`: the distances to the next inner nodes."""
+    """Return the distance (n,) of each node of `pieces` from the next inner node: the first-cell height."""
     heights = []
     for piece in pieces:
         own, beside = rows_at(grid, piece.patch, 2)

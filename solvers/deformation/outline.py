@@ -18,9 +18,9 @@ _WIDEST_BASE = 0.2  # widest base, in perimeters of the section; flatbacks have 
 
 
 def on_outline(wall: Floats, outline: Airfoil | Outline) -> tuple[Floats, Notes]:
-    """Return a closed `wall` (n, 2), first node repeated, with nodes moved to a new outline; and notes.
+    """Move the nodes of a closed `wall` (n, 2), whose first node is repeated, to `outline`; return notes too.
 
-    Raises InputError: the wall has a blunt trailing edge and the outline a sharp one.
+    Raises InputError if the wall has a blunt trailing edge and the outline a sharp one.
     """
     if isinstance(outline, Airfoil):
         try:
@@ -113,7 +113,7 @@ def _on_curve(wall: Floats, new: Curve) -> tuple[Floats, Notes]:
 
 
 def on_line(wall: Floats, points: Floats) -> tuple[Floats, Notes]:
-    """Return an open `wall` (n, 2) with nodes moved to the curve through `points` (m, 2); and notes."""
+    """Move the nodes of an open `wall` (n, 2) to the curve through `points` (m, 2); return notes too."""
     ends = points[[0, -1]]
     if norms(wall[[0, -1]] - ends).sum() > norms(wall[[0, -1]] - ends[::-1]).sum():
         points = points[::-1]

@@ -14,7 +14,7 @@ CELLS = 2.0  # largest length of a group of nodes, divided by the height of the 
 
 @dataclass(frozen=True, eq=False)
 class Sources:
-    """The moved, the sliding and the fixed nodes of the outer boundary of a grid."""
+    """Moved, sliding and fixed nodes of the outer boundary of a grid."""
 
     moved: Bools  # (n,) mask of nodes with prescribed new positions
     areas: Floats  # (n,) lengths or areas assigned to boundary nodes; 0 for nodes that are not sources
@@ -29,10 +29,10 @@ class Sources:
 
 
 def sources_of(table: NodeTable, moved: Bools) -> Sources:
-    """Return the sources on the outer boundary of `table` when the nodes `moved` (n,) move.
+    """Return the sources on the outer boundary of `table`; the mask `moved` (n,) marks moved nodes.
 
-    Far from all moved nodes, one source stands for a group of nodes. The extent of such a group is
-    limited by the distance from the moved nodes and by the first-cell height.
+    Far from the moved nodes, one source stands for a group of fixed nodes. The distance from the moved nodes
+    and the first-cell height limit the extent of such a group.
     """
     elements = elements_of(table.pieces, table.nodes.shape[1])
     areas = areas_of(table.nodes, elements)
@@ -50,7 +50,7 @@ def sources_of(table: NodeTable, moved: Bools) -> Sources:
 
 
 def areas_of(nodes: Floats, elements: Indices) -> Floats:
-    """Return the length or area (n,) of each node; an element is divided equally among its nodes."""
+    """Return the length or area (n,) that belongs to each node: an equal share of each of its `elements`."""
     corners = nodes[elements]
     if elements.shape[1] == 2:
         size = norms(corners[:, 1] - corners[:, 0])

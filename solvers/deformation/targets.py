@@ -45,10 +45,9 @@ class NodeTargets:
 def targets_of(table: NodeTable, walls: Mapping[str, NewWall] | NewWall) -> NodeTargets:
     """Return the new positions of the nodes of walls.
 
-    `walls` has the new shapes by the name of the wall, or one shape if there is only one wall. A grid or a
-    boundary gives new shapes to all walls that have the names of its patches.
-
-    Raises InputError: the grid has no wall of a given name; a new shape is unsuitable.
+    `walls` has the new shape of each wall by name, or a single shape if there is one wall. A shape that is a
+    grid or a boundary moves all walls that have the names of its patches. Raises InputError if the grid has
+    no wall of a given name, or if a new shape is unsuitable.
     """
     moved, nodes = np.zeros(len(table.nodes), dtype=bool), table.nodes.copy()
     notes: list[str] = []

@@ -21,9 +21,9 @@ NEAR, FAR = 4.0, 10.0
 
 
 def openings(z: Any, xp: Any) -> Any:
-    """Return how much splines are damped (.., 2, 2), 0 to 1, at the four corners of planar grids.
+    """Return how much splines are damped, 0 to 1, at each corner (.., 2, 2) of planar grids.
 
-    `z` (.., m, n) are the nodes as complex numbers, arrays of the module `xp`, numpy or torch.
+    `z` (.., m, n) are the nodes as complex numbers, an array of numpy or torch; `xp` is that module.
     """
     west_east = xp.stack([z[..., 0, :], z[..., -1, :]], -2)
     beside = xp.stack([z[..., 1, :], z[..., -2, :]], -2)
@@ -36,7 +36,7 @@ def openings(z: Any, xp: Any) -> Any:
 
 @lru_cache(maxsize=16)
 def fading(m: int, n: int) -> Floats:
-    """Return, for each corner, the fraction (4, m, n) of its damping at each node of an m x n grid."""
+    """Return, for each of the four corners, which fraction (4, m, n) of its damping applies at each node."""
     cells = np.maximum(*np.ogrid[0.0:m, 0.0:n])
     first = np.clip((FAR - cells) / (FAR - NEAR), 0.0, 1.0)
     return np.stack([first, first[:, ::-1], first[::-1], first[::-1, ::-1]])
@@ -44,9 +44,9 @@ def fading(m: int, n: int) -> Floats:
 
 @lru_cache(maxsize=16)
 def cubic(n: int, count: int) -> Floats:
-    """Return the matrix (count, n) from second derivatives at n knots to their contribution to the spline.
+    """Return the matrix (count, n) from second derivatives at n uniform knots to their share of the spline.
 
-    The knots are uniform; the spline is evaluated at `count` uniform places.
+    The share is evaluated at `count` uniform places.
     """
     return _weighted(n, count, 2)
 

@@ -15,15 +15,15 @@ LEAST_NODES = 9  # fewest coarse nodes along a direction that describe anything
 
 
 def check_coarse(n: int) -> None:
-    """Raise InputError if `n` coarse nodes along a direction are too few."""
+    """Raise InputError if a coarse grid with `n` nodes along a direction is too coarse."""
     if n < LEAST_NODES:
         raise InputError(f"{n} coarse nodes along a direction are too few", f"use at least {LEAST_NODES}")
 
 
 def thinned(boundary: Boundary, ni: int, nj: int) -> Boundary:
-    """Return `boundary` with only ni x nj nodes, interpolated linearly at equal steps of the index.
+    """Return `boundary` with ni x nj nodes, interpolated linearly at equal steps of the node index.
 
-    A C boundary becomes a quad, because its trailing edge need not be one of the new nodes.
+    A C boundary becomes a quad boundary, since its trailing edge need not be one of the new nodes.
     """
     topology: Topology = "quad" if boundary.topology == "c" else boundary.topology
     south, north = _thinned(boundary.south, ni), _thinned(boundary.north, ni)
@@ -32,7 +32,7 @@ def thinned(boundary: Boundary, ni: int, nj: int) -> Boundary:
 
 
 def refine_grid(coarse: Floats, boundary: Boundary) -> Floats:
-    """Return the nodes (ni, nj, 2) inside `boundary`, interpolated from a `coarse` grid (m, n, 2).
+    """Return nodes (ni, nj, 2) inside `boundary`, interpolated by splines from a `coarse` grid (m, n, 2).
 
     The boundary of the coarse grid must be the one that `thinned` returns.
     """
@@ -45,9 +45,9 @@ def refine_grid(coarse: Floats, boundary: Boundary) -> Floats:
 
 
 def divided(coarse: Floats, boundary: Boundary) -> Floats:
-    """Return the bilinear interpolation (ni, nj, 2) of a quad grid `coarse` (m, n, 2) inside `boundary`.
+    """Return nodes (ni, nj, 2) inside `boundary`, interpolated linearly from a `coarse` quad grid (m, n, 2).
 
-    Cells can be folded only in folded coarse cells, or next to edges that are curved between coarse nodes.
+    Cells fold only in folded coarse cells, or next to edges that are curved between coarse nodes.
     """
     nodes = planar_nodes(boundary.ni, boundary.nj)
     along, across = (

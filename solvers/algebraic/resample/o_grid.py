@@ -24,7 +24,7 @@ SQUARINGS = 3  # squarings that make the eighth power
 
 
 def refine_around(coarse: Floats, boundary: Boundary) -> Floats:
-    """Return the nodes (ni, nj, 2) inside the O `boundary`, interpolated from `coarse` (m, n, 2)."""
+    """Return nodes (ni, nj, 2) inside an O `boundary`, interpolated from a `coarse` grid (m, n, 2)."""
     m, ni, nj = len(coarse), boundary.ni, boundary.nj
     threads = threads_for(ni * nj)
     lines, share = map(np.ascontiguousarray, along_lines(coarse[..., 0] + 1j * coarse[..., 1], nj))
@@ -48,9 +48,9 @@ def refine_around(coarse: Floats, boundary: Boundary) -> Floats:
 
 
 def along_lines(z: Any, nj: int, xp: Any = np) -> tuple[Any, Any]:
-    """Return nj nodes (..., nj) on each complex line `z` (..., n), and the arc-length fractions of the nodes.
+    """Return nj nodes (..., nj) on each line of complex nodes `z` (..., n), and their arc-length fractions.
 
-    `xp` is numpy or torch, the module of `z`.
+    `z` is an array of numpy or torch; `xp` is that module.
     """
     n = z.shape[-1]
     moves = z[..., 1:] - z[..., :-1]

@@ -32,7 +32,7 @@ WIDER = (0, 1, 3)
 
 
 def refine_quad(coarse: Floats, sides: Sides) -> Floats:
-    """Return the nodes (batch, 2, ni, nj) inside `sides`, interpolated from `coarse` (batch, 2, m, n)."""
+    """Return nodes (batch, 2, ni, nj) inside `sides`, interpolated from `coarse` grids (batch, 2, m, n)."""
     nodes = _evaluated(coarse, sides, None)
     for k, one in enumerate(nodes):
         if count_folded(one.transpose(1, 2, 0)):
@@ -41,10 +41,10 @@ def refine_quad(coarse: Floats, sides: Sides) -> Floats:
 
 
 def mended(coarse: Floats, sides: Sequence[Floats], nodes: Floats) -> Straight | None:
-    """Interpolate `coarse` (2, m, n) to `nodes` (2, ni, nj) again in place, linearly around folded cells.
+    """Interpolate `coarse` (2, m, n) anew to `nodes` (2, ni, nj), in place, linearly around folded cells.
 
-    Return an array (m, n) that is 1 at the coarse nodes with linear interpolation. Return None, and leave
-    `nodes` unchanged, if `coarse` has folded cells or no attempt reduces the number of folded cells.
+    Returns a mask (m, n) that is 1 at the coarse nodes with linear interpolation. If `coarse` has folded
+    cells, or if nothing reduces the number of folded cells, `nodes` stay unchanged and None is returned.
     """
     if count_folded(coarse.transpose(1, 2, 0)):
         return None

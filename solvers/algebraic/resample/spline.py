@@ -12,7 +12,7 @@ from meshonet.geometry.elementary import power, product
 
 @lru_cache(maxsize=16)
 def bending(m: int, periodic: bool) -> Floats:
-    """Return the matrix (m, m) from values at m >= 2 uniform knots to the spline's second derivatives M.
+    """Return the matrix (m, m) from values f at m >= 2 uniform knots to second derivatives M of the spline.
 
     The third derivative is continuous at the second and the last but one knot ("not a knot"), and ::
 
@@ -72,10 +72,10 @@ def between(values: Floats, n: int) -> Floats:
 
 @lru_cache(maxsize=16)
 def places(m: int, n: int) -> tuple[NDArray[np.intp], Floats]:
-    """Return, for n uniform places over m knots, the index (n,) of the knot before, and weights (n, 4).
+    """Return, for each of n uniform places, the index (n,) of the knot k before it, and weights (n, 4).
 
-    The weights multiply f_k, f_k+1, M_k and M_k+1: values f and second derivatives M at the knot before and
-    at the next. With t from 0 to 1 between the knots, the spline is ::
+    The weights multiply f_k, f_k+1, M_k and M_k+1: values f and second derivatives M at the knots k and k+1.
+    At the fraction t between these knots, the spline is ::
 
         s = (1-t) f_k + t f_k+1 - t (1-t) (2-t)/6 M_k - t (1-t) (1+t)/6 M_k+1
     """
@@ -89,7 +89,7 @@ def places(m: int, n: int) -> tuple[NDArray[np.intp], Floats]:
 
 @lru_cache(maxsize=16)
 def spline_matrix(m: int, n: int, periodic: bool = False) -> Floats:
-    """Return the matrix (n, m) from values at m uniform knots to spline values at n uniform places.
+    """Return the matrix (n, m) from values at m uniform knots to values of the spline at n uniform places.
 
     >>> cubes = np.arange(5.0) ** 3
     >>> np.abs(spline_matrix(5, 9) @ cubes - np.linspace(0, 4, 9) ** 3).max() < 1e-12
