@@ -17,17 +17,17 @@ class RowRequest(VolumeRequest):
     Parameters
     ----------
     first_cell : float, optional
-        Height of the first cells at blade, hub, casing and tip; None: 1e-3.
+        Height of the first cells at blade, hub, casing and tip; by default 1e-3.
     y_plus, reynolds, chord_fraction : float, optional
         First-cell height as y+ on a turbulent flat plate, with the Reynolds number of the longest chord.
     growth : float, optional
-        Largest growth ratio of cells away from walls; None: 1.2.
+        Largest growth ratio of cells away from walls; by default 1.2.
     cells : int, optional
         Approximate number of cells in one passage; by default 500,000.
     copies : int, optional
         Number of passages beside each other; the number of blades gives the whole annulus.
     threads : int, optional
-        Number of threads; None: all cores.
+        Number of threads; by default all cores.
     percentiles : bool, optional
         Whether the quality includes percentiles.
     allow_invalid : bool, optional
@@ -36,7 +36,7 @@ class RowRequest(VolumeRequest):
     Raises
     ------
     InputError
-        A value out of its range; parameters that need or exclude each other.
+        If a value is out of its range, or if parameters need or exclude each other.
     """
 
     what: ClassVar[str] = "a row"

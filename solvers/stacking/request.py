@@ -16,37 +16,37 @@ DEFAULT_FAR_FIELD = 15.0  # chords
 class StackRequest(VolumeRequest):
     """Options of the surface or volume grid of a stack, checked on construction.
 
-    Lengths are in longest chords; in a duct in the unit of its sections' positions.
+    The unit of length is the longest chord; for a duct, it is that of the positions of sections.
 
     Parameters
     ----------
     around : int, optional
-        Odd number of nodes around a section, with the repeated first node; None: 129.
+        Odd number of nodes around a section, with the repeated first node; by default 129.
     span : int, optional
-        Number of nodes from the first section to the last. None: 49; in ducts and blades more if needed.
+        Number of nodes from the first section to the last; by default 49, or more in ducts and blades.
     cells : int, optional
         Approximate number of cells around a wing or blade, instead of `around`, `span` or both.
     base : float, optional
-        Smallest height of trailing edges in chords of each section; thinner edges are opened. None: 0.005, or
-        0.001 for a wing from a surface file.
+        Smallest height of trailing edges, in chords of each section; thinner edges are opened. The default
+        is 0.005, or 0.001 for a wing from a surface file.
     first_cell : float, optional
-        First-cell height at every wall node; None: 1e-3.
+        First-cell height at every wall node; by default 1e-3.
     y_plus, reynolds, chord_fraction : float, optional
         First-cell height as y+ on a turbulent flat plate, with the Reynolds number of the longest chord or of
         the widest section of a duct.
     layers : int, optional
-        Number of nodes along each line away from the wall, with the wall node; None: as `growth` requires.
+        Number of nodes along each line from the wall, with the wall node; by default as `growth` requires.
     growth : float, optional
-        Growth ratio of cells away from the wall, if `layers` is not given; None: 1.2.
+        Growth ratio of cells away from the wall, if `layers` is not given; by default 1.2.
     far_field : float, optional
-        Distance of the far field.
+        Distance of the far field; by default 15.
     revolve : float, optional
         Angle in degrees by which the z axis of a blade or duct is bent around `axis` from the first section
         to the last.
     axis : AxisLine, optional
-        Axis of `revolve`, in the plane of the sections; None: the x axis.
+        Axis of `revolve`, in the plane of the sections; by default the x axis.
     threads : int, optional
-        Number of threads; None: all cores.
+        Number of threads; by default all cores.
     percentiles : bool, optional
         Whether the quality includes percentiles.
     allow_invalid : bool, optional
@@ -55,7 +55,7 @@ class StackRequest(VolumeRequest):
     Raises
     ------
     InputError
-        A value out of its range; parameters that need or exclude each other.
+        If a value is out of its range, or if parameters need or exclude each other.
     """
 
     what: ClassVar[str] = "a stack"

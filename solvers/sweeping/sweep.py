@@ -33,11 +33,11 @@ class Sweep:
     Parameters
     ----------
     planes : int, optional
-        Number of planes of nodes. None: cells turn by at most 4 degrees, and are at most three mean cell
-        widths long.
+        Number of planes of nodes. By default, cells turn by at most 4 degrees, and are at most three mean
+        cell widths long.
     up : tuple of 3 float, optional
-        Direction of the section's y axis at the start, as closely as possible. None: z, or y for a path along
-        z.
+        Direction of the section's y axis at the start, as closely as possible; by default z, or y for a path
+        along z.
     twist : float, optional
         Additional rotation of the section from start to end, in degrees.
     scale : float, optional
@@ -46,7 +46,7 @@ class Sweep:
     Raises
     ------
     InputError
-        A value out of its range.
+        If a value is out of its range.
     """
 
     planes: int | None = None
