@@ -204,7 +204,7 @@ both with the solvers, on random bodies and on plates with a hole. CPU times are
   whose Winslow grid has folded cells do not count.
 - *distance*: relative L2 distance to the converged solution of Winslow's equations.
 
-Bodies for which one of the two solvers fails are left out: 2 of the first 40.
+Bodies for which one of the two solvers fails are left out: 2 of 40.
 """
 TAIL = """
 ## Conclusions

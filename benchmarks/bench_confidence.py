@@ -175,7 +175,8 @@ compares expected and true errors of four networks, mostly on kinds of shapes th
 
 - *expected error*: a few solver steps move the nodes of the predicted grid. The expected error is the RMS
   length of these moves, divided by the RMS distance of the nodes from their centroid.
-- *true error*: RMS distance of the nodes from the converged solution, divided in the same way.
+- *true error*: RMS distance of the nodes from the converged grid of the solver that the network imitates,
+  divided in the same way.
 - *--polish auto*: before the estimate, solver iterations improve the predicted grid. *off*: no iterations.
 - *rank correlation*: Spearman's coefficient of expected and true errors.
 - *expected / true*: 5th, 50th and 95th percentile of this ratio over the grids.
@@ -187,8 +188,8 @@ compares expected and true errors of four networks, mostly on kinds of shapes th
 `airfoil-o` on three kinds of random bodies with 65 x 33 nodes. There are {count} shapes of each kind. The
 kinds are those of the [open comparison](yardstick.md).
 
-The network `meshonet` of [the paper](paper/index.md) was trained on 30 arches. It was tested on 120 arches,
-hexagons and semicircles and on 80 four-sided domains. The given boundary nodes replace its predicted boundary
+The network `meshonet` of [the paper](paper/index.md) was trained on 30 arches. It was tested on 40 arches, 40
+hexagons, 40 semicircles and 80 four-sided domains. The given boundary nodes replace its predicted boundary
 nodes, which folds cells.
 """
 COLUMNS = (

@@ -49,7 +49,7 @@ this page, with three tables:
   runs give bitwise equal nodes.
 - **Operators**: `infer --device cuda` with three networks.
 - **Training**: shapes per second, with and without the options `--amp` and `--compile`. The time of compiling
-  does not count.
+  does not count. Relative values are relative to training without these options.
 
 *MB* is the peak memory of the GPU. *distance* is the largest distance of a node from the node that the CPU
 computes, relative to the size of the domain; above 1e-10 it is marked TOO FAR.

@@ -47,8 +47,8 @@ solvers get the same boundary nodes.
 
 - *distance*: largest distance between a node of `meshonet.layer` and the node of the compiled solver,
   relative to the domain size.
-- *folded*: grids of `meshonet.layer` with folded cells. *folded in torch only*: those of them for which the
-  grid of the compiled solver has no folded cells.
+- *folded*: grids of `meshonet.layer` with folded cells. *folded in torch only*: of these, the grids for which
+  the compiled solver folds no cells.
 - *CPU ms*: CPU time to compute a grid, in milliseconds.
 - *gradient*: CPU time of the gradient with respect to all boundary nodes, divided by the CPU time of the
   grids.
