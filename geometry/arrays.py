@@ -126,7 +126,7 @@ def arc_lengths(line: Floats) -> Floats:
 
 
 def arc_parts(line: Floats) -> Floats:
-    """Return the arc lengths (..., n) at the nodes of lines (..., n, d), divided by those of whole lines."""
+    """Return the arc lengths (..., n) at the nodes of lines (..., n, d) as fractions of the line's length."""
     arcs = arc_lengths(line)
     return np.asarray(arcs / arcs[..., -1:])
 

@@ -76,7 +76,7 @@ def place_of(point: Iterable[float]) -> str:
 def meant(word: str, known: Iterable[str], likeness: float = 0.6) -> str:
     """Return ``did you mean ...?`` with the word of `known` that is most similar to `word`, or ''.
 
-    Their similarity ratio, from 0 to 1, must be at least `likeness`, or `word` must begin with that word.
+    The similarity of the two, from 0 to 1, must be at least `likeness`, unless `word` begins with the other.
 
     >>> meant("max_angel", ["max_angle", "min_angle"])
     "did you mean 'max_angle'? "
@@ -112,7 +112,7 @@ def in_place(place: str) -> Iterator[None]:
 
 
 def spelled(text: str, spelling: Callable[[str], str] = str) -> str:
-    """Return `text`, with the function `spelling` applied to parameter names in braces; {{ becomes {.
+    """Return `text` with the function `spelling` applied to names in braces; double braces become single.
 
     >>> spelled("give {far_field} as 'a-{{index}}'", lambda name: "--" + name.replace("_", "-"))
     "give --far-field as 'a-{index}'"

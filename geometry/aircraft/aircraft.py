@@ -38,7 +38,8 @@ class Aircraft:
     Raises
     ------
     InputError
-        A wing without tip, with a very short chord, or with sections that are no airfoils; equal patch names.
+        A wing without a tip, with a very short chord, or with sections that are not airfoils; two patches
+        with the same name.
 
     Examples
     --------

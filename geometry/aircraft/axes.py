@@ -34,7 +34,7 @@ class AircraftAxes:
         return np.stack([points[..., 0], points[..., self.up], self.sign * points[..., self.span]], axis=-1)
 
     def to_file(self, grid: Grid) -> Grid:
-        """Return the `grid` of an aircraft in the axes of the file; i is reversed if axes mirror the grid."""
+        """Return an aircraft's `grid` in the axes of the file; i is reversed if this mirrors the grid."""
         if self == AircraftAxes():
             return grid
         if (self.sign > 0) != (self.up == 1):  # the other handedness
@@ -53,7 +53,7 @@ FILE_AXES = AircraftAxes()
 
 
 def axes_of(points: Floats) -> AircraftAxes | None:
-    """Return the axes of a file whose `points` (n, 3) are on half of an aircraft; None if on both halves."""
+    """Return the axes of a file whose `points` (n, 3) are half of an aircraft; None if they are all of it."""
     flat = FLAT * float(np.ptp(points, axis=0).max())
     for span in (2, 1):
         for sign in (1, -1):

@@ -30,7 +30,7 @@ class Body:
     meridian : array
         Points (n, 2) of x and radius from nose to tail; x increases, and the radius is 0 at both ends.
     y : float, optional
-        Height of the axis.
+        The y of the axis.
     name : str, optional
         Name of the body and of its patches.
 
@@ -138,7 +138,7 @@ class Body:
         return np.asarray(s)
 
     def arcs_near(self, points: Floats) -> Floats:
-        """Return arc lengths (n,) of the meridian's points nearest to `points` (n, 2), from nose to tail."""
+        """Return arc lengths (n,) on the meridian nearest to `points` (n, 2), x and radius, nose to tail."""
         s = arc_lengths(points)
         s *= self.length / s[-1]
         for _ in range(_STEPS):  # Newton's method for the foot of each point

@@ -61,8 +61,8 @@ def thickened(
 
     `nodes` has an array (ni, nj, nk, 3) of finite nodes for each block. Patches and connections extend over
     all planes of nodes. `ends` has the name and kind of the patch on the first plane, then on the last. If it
-    is None, the two planes are connected, by the periodic `motion` or, if that is None too, because they
-    coincide.
+    is None, the two planes are connected: by the periodic `motion`, or as coinciding planes if that is None
+    too.
 
     Raises InputError: blocks that are not planar; nodes that differ where blocks are connected.
     """

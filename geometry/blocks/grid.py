@@ -216,7 +216,7 @@ class Grid(Connected):
         return low, np.max([block.nodes.max(axis=axes) for block in self.blocks], axis=0)
 
     def outer_patches(self) -> list[Patch]:
-        """Return patches that cover the outer boundary of all blocks, each cell once (`outer_patches`)."""
+        """Return patches that cover the outer boundary of all blocks, each cell exactly once."""
         from meshonet.geometry.blocks.outer_patches import outer_patches
 
         named: list[list[Patch]] = [[] for _ in self.blocks]

@@ -64,7 +64,7 @@ class Motion:
         return bool(np.abs(self(frame) - other(frame)).max() <= tolerance * size)
 
     def inverse(self) -> Motion:
-        """Return the inverse motion, to rounding."""
+        """Return the inverse motion, up to rounding."""
         turn = np.array(self.turn).T
         back = Motion(turn=tuple(map(tuple, turn.tolist())) if self.turn else ())
         shift = back(-np.array(self.shift)) if self.shift else np.empty(0)

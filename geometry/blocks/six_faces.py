@@ -119,7 +119,7 @@ class SixFaces:
         return Grid((block,), patches, (), self.name, provenance or {})
 
     def resampled(self, counts: tuple[int, int, int]) -> "SixFaces":
-        """Return the faces with other node counts but equal distribution, interpolated by cubic splines.
+        """Return the faces with other node counts but the same distribution, interpolated by cubic splines.
 
         Raises InputError: fewer than 2 nodes along a direction.
         """

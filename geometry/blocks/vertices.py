@@ -37,7 +37,7 @@ class Vertices:
 
     @cached_property
     def regular(self) -> Bools:
-        """(n,) whether a node is regular: four cells meet there, or two if it is on the boundary."""
+        """Whether each node (n,) is regular: four cells meet there, or two if it is on the boundary."""
         return np.asarray(self.valence == np.where(self.outer, 2, 4))
 
     @cached_property

@@ -42,7 +42,7 @@ class Corner:
     k: Any
 
     def restore(self, v: Any) -> Any:
-        """Return the points v for points `v` after the map (v' above), an array or a torch tensor."""
+        """Return the inverse map of points `v` (v' above), which are an array or a torch tensor."""
         r = ((v - self.P) / (v - self.Q)) ** self.k
         return (self.q * r - self.p) / (r - 1.0)
 
@@ -105,5 +105,5 @@ def follow(wall: Complexes, centre: complex, quarter: complex) -> Complexes:
 
 
 def removable(k: float) -> bool:
-    """Return whether the map can straighten a corner with exterior angle k pi."""
+    """Return whether a `Corner` map can straighten a corner with exterior angle k pi."""
     return 0.55 < k < 0.995 or 1.03 < k < 1.9

@@ -26,9 +26,9 @@ class Curve:
 
     `points` (n, 2) are at least 2, or 3 for a closed curve, which may repeat its first. The tangent may jump
     at `corners` (indices of points); None: they are detected (`geometry.polygon.corners`). Intervals in the
-    mask `straight` (intervals,) are straight lines. So are long ones between rounded corners, whose curves
-    are tangent to them (`geometry.polygon.straights`). Raises InputError: too few points; a point that is not
-    finite or equals its neighbour; a corner out of range.
+    mask `straight` (intervals,) are straight lines. So are long intervals between rounded corners
+    (`geometry.polygon.straights`); the curves beside them are tangent to them. Raises InputError: too few
+    points; a point that is not finite or equals its neighbour; a corner out of range.
 
     >>> square = Curve(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), closed=True)
     >>> square.length, square.corners.tolist()

@@ -44,8 +44,8 @@ _PARTS = 16  # parts of an interval in the table of arc length
 class SplinePath:
     """The cubic spline through `points` (n, 3), by cumulative chord length, with continuous curvature.
 
-    A closed path repeats its first point; outer intervals of an open path are parabolas.
-    Raises InputError: too few points (2, closed 4); equal neighbours; values that are not finite.
+    A closed path repeats its first point; outer intervals of an open path are parabolas. Raises InputError:
+    fewer than 2 points (closed: 4); equal neighbours; values that are not finite.
 
     >>> round(SplinePath(np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [3.0, 0.0, 0.0]])).length, 9)
     3.0

@@ -160,8 +160,8 @@ def limited(
     """Return slopes (intervals, 2) `start` and `stop` of each interval, limited to avoid overshoots.
 
     The tangent at a point (n, 2) stays near the directions of its two chords. At `corners` (indices of
-    points) it has one chord; it may deviate from it by as much as the polygon turns at the chord's other end.
-    A closed curve does not repeat its first point.
+    points) it has only one chord, from which it may deviate by as much as the polygon turns at the chord's
+    other end. A closed curve does not repeat its first point.
     """
     n = len(points)
     chord = rolled(points, -1) - points  # the last of an open curve is not used

@@ -57,7 +57,7 @@ class Domain:
     def of_polygons(
         cls, polygons: Sequence[Floats], name: str = "", names: Sequence[str | Sequence[str]] = ()
     ) -> Self:
-        """Return the domain inside the first polygon (n, 2) and outside the others, in either direction.
+        """Return the domain inside the first polygon and outside the others, which run in either direction.
 
         Parameters
         ----------
@@ -93,12 +93,12 @@ class Domain:
 
     @cached_property
     def area(self) -> float:
-        """Area of the domain, with loops that are polygons through their points."""
+        """Area of the domain, computed from the polygons through the points of its loops."""
         return float(sum(polygon_area(loop.curve.points) for loop in self.loops))
 
     @property
     def curved_areas(self) -> list[float]:
-        """Area bounded by the curve of each loop (not by the polygon through its points); < 0 for holes."""
+        """Area within the curve of each loop, not within the polygon through its points; < 0 for holes."""
         return [float(polygon_area(loop.curve.polyline(_PARTS))) for loop in self.loops]
 
     @cached_property

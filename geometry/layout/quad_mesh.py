@@ -131,8 +131,7 @@ class QuadMesh:
     def aspects(self, lengths: Floats) -> Floats:
         """Return the aspect ratios (m,) of the quads, for edges with the given `lengths` (e,).
 
-        The aspect ratio is sqrt(l12 l30 / (l01 l23)); lab is the length of the side from corner a to corner
-        b.
+        The aspect ratio is sqrt(l12 l30 / (l01 l23)); lab is the length of the side from corner a to b.
         """
         sides = lengths[self.edge_of]
         return np.asarray(np.sqrt(sides[:, 1] * sides[:, 3] / (sides[:, 0] * sides[:, 2])))

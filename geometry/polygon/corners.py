@@ -50,8 +50,8 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
     - by more than 75 degrees.
 
     Two adjacent points are both corners if the polygon turns at both by more than 40 degrees (8 degrees if
-    the polygon is open), and five times as much as at the next points on both sides. The two ends of an
-    oblique base are both corners too.
+    the polygon is open), and five times as much as at the next points on both sides. So both ends of an
+    oblique base (blunt trailing edge) are corners.
 
     The round end of a thin body that is given by few points can turn by up to 155 degrees at one point and is
     still no corner. It is recognised by the thickness of the body, which grows like the square root of the

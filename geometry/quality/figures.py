@@ -38,7 +38,7 @@ FIGURES: Mapping[str, str] = MappingProxyType({
 
 @dataclass(frozen=True)
 class Figure:
-    """A value and, if known, its node or cell `at` ([block,] i, j[, k]) and its direction of grid lines."""
+    """A value and, if known, its node or cell `at` ([block,] i, j[, k]) and the grid line's direction."""
 
     value: float
     at: tuple[int, ...] | None = None
@@ -59,7 +59,7 @@ _SAME = 1e-9  # largest distance of the ends of a closed line, divided by its ex
 
 @dataclass(frozen=True, eq=False)
 class Figures:
-    """Figures of a grid by name; each group of figures is measured at its first use."""
+    """Figures (values with names) of a grid; each group of figures is measured at its first use."""
 
     grid: Grid
     quality: Quality

@@ -34,7 +34,7 @@ class Gate:
     limit: float  # limit, in the unit of the metric
 
     def figure(self, figures: "Figures", more: Mapping[str, Figure] = NO_MORE) -> Figure:
-        """Return the figure that the gate limits, from `more` or else `figures`. Raises InputError: none."""
+        """Return the figure that the gate limits, from `more` or `figures`. Raises InputError: in neither."""
         figure = more.get(self.metric) or figures(self.metric, self.statistic)
         if figure is None:
             known = [name for name in COUNTS if figures(name)]
@@ -159,7 +159,7 @@ VERDICTS = ("pass", "warn", "fail", "error")  # from best to worst; ``error``: t
 
 
 def verdict_word(verdict: str) -> str:
-    """Return the word for a verdict that users see.
+    """Return the word that users see for a verdict.
 
     >>> verdict_word("warn"), verdict_word("fail")
     ('warn', 'FAIL')

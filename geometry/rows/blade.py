@@ -40,7 +40,7 @@ class BladeSurface:
     channel : the channel in which the blade stands.
     blades : number of blades; profiles whole pitches away from the others are rotated.
 
-    Attribute `notes` has the changes.
+    The attribute `notes` says what was changed.
 
     Raises InputError, with the number of the profile from 1: profiles in another order, crossing, or too far
     from hub and casing; also as `BladeProfile`.
@@ -153,7 +153,7 @@ class BladeSurface:
         return CubicTable(values, self.knots)
 
     def at(self, u: Floats, h: Floats) -> Floats:
-        """Return s and theta (p, m, 2) at places `u`, (m,) or (p, m), around the blade and `h` (p, m)."""
+        """Return s and theta (p, m, 2) at places `u`, (m,) or (p, m), around the blade, at `h` (p, m)."""
         return self.crossings(self.lines(u.ravel()), h, len(h) if u.ndim == 1 else 1)
 
     def crossings(self, lines: CubicTable, h: Floats, levels: int = 1) -> Floats:

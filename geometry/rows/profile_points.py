@@ -16,7 +16,7 @@ _STEPS = 3.0  # the same, divided by the longest distance of neighbouring points
 
 
 def as_points(values: ArrayLike, columns: int) -> Floats:
-    """Return `values` as an array (n, columns). Raises InputError: another shape; what is not a number."""
+    """Return `values` as an array (n, columns). Raises InputError: another shape, or not numbers."""
     try:
         points = np.array(values, dtype=np.float64)
     except (TypeError, ValueError):
@@ -29,7 +29,7 @@ def as_points(values: ArrayLike, columns: int) -> Floats:
 
 
 def apart(points: Floats, *, closed: bool) -> Floats:
-    """Return points (n, d) without those that equal the next (of the last, if `closed`, the first)."""
+    """Return points (n, d) without repeated neighbours; if `closed`, last and first are neighbours too."""
     steps = norms(points - np.roll(points, -1, axis=0))
     kept = steps > _SAME * np.ptp(points, axis=0).max(initial=0.0)
     kept[-1:] |= not closed

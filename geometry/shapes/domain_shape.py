@@ -75,7 +75,7 @@ class DomainShape:
 
 
 def itself(shape: Shape) -> Shape:
-    """Return `shape`, as a function whose `partial` can be pickled, unlike a lambda."""
+    """Return `shape`; a `partial` of this function can be pickled, a lambda cannot."""
     return shape
 
 

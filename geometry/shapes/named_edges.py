@@ -16,7 +16,7 @@ _BLOCK = 1 << 22  # distances computed at a time
 
 
 class Labelled:
-    """A shape with `names` (n,) of its straight `edges` (n, 2, 2), which become names of patches; "" is none.
+    """A shape with names of its straight `edges` (n, 2, 2); `names` (n,) other than "" become patch names.
 
     Edges with names in `walls` are walls unless the name implies another kind.
     """
@@ -63,7 +63,7 @@ class Labelled:
 
 
 def runs(side: Side, names: Sequence[str], walls: Sequence[str] = ()) -> list[Patch]:
-    """Return the patches of a side whose cells have these `names`; for "", it is the name of the side.
+    """Return the patches of a side whose cells have these `names`; cells named "" get the side's name.
 
     Patches with names in `walls` are walls unless the name implies another kind.
 

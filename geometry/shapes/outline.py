@@ -57,7 +57,7 @@ class Outline:
 
     @property
     def topology(self) -> Topology:
-        """What the topology ``auto`` is: ``quad`` with four or more convex corners, otherwise ``o``."""
+        """What ``auto`` means: ``quad`` if there are four or more convex corners, otherwise ``o``."""
         return "quad" if self.corners is not None or len(self._sharp()) >= 4 else "o"
 
     def boundary(self, sampling: Sampling) -> Boundary:

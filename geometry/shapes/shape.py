@@ -46,7 +46,7 @@ class SpatialShape:
 
 
 def edges_of(shape: Shape, sampling: Sampling) -> Boundary:
-    """Return the boundary of `shape` with the notes of both, after a check for crossing edges.
+    """Return the boundary of `shape`, with the notes of the shape, after a check for crossing edges.
 
     Raises InputError: the errors of `shape`; edges that cross or touch; a body outside its far field.
     """

@@ -26,7 +26,7 @@ class FirstCell:
     chord_fraction : float, optional
         Position along the reference length at which y+ is converted, 0 to 1.
     length : float, optional
-        Reference length of the Reynolds number, in the unit of `first_cell`; None depends on the grid.
+        Reference length of the Reynolds number, in the unit of `first_cell`; None: from the grid.
     """
 
     first_cell: AtWalls | None = None

@@ -43,10 +43,10 @@ class PoleCore:
 def core_of(fan: Floats, quarters: int, most: int, *, even: bool = False) -> PoleCore:
     """Return the core of a `fan` (m + 1, n, 3), whose curves leave a pole at j = 0.
 
-    The core and its rings are rounded, as a march requires. An `even` core is square; it has no kinks, across
-    which sizes would differ by a factor of up to 2. `quarters` is the angle of the fan in right angles. A
-    closed fan repeats its first curve, and m is even. Columns are replaced until cells are square, but at
-    most `most`.
+    The core and its rings are rounded, as marching requires. An `even` core is square; it has no kinks,
+    across which sizes would differ by a factor of up to 2. `quarters` is the angle of the fan in right
+    angles. A closed fan repeats its first curve, and m is even. Columns are replaced until cells are square,
+    but at most `most`.
     """
     m = len(fan) - 1
     steps = norms(np.diff(fan, axis=1)).mean(axis=0)

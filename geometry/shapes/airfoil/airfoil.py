@@ -35,7 +35,7 @@ _WIDEST_WEDGE = 50.0  # degrees; a C grid by default needs surfaces that meet at
 
 
 class CrossingError(InputError):
-    """Error: the polygon through the wall nodes, which are too few, crosses itself in a thin part."""
+    """Error: there are too few wall nodes, and the polygon through them crosses itself in a thin part."""
 
 
 class Airfoil:
@@ -140,10 +140,7 @@ class Airfoil:
         return Airfoil(points, self.name, notes=self.notes)
 
     def smoothed(self, tolerance: float) -> Airfoil:
-        """Return the airfoil with its points moved to smoothing splines within `tolerance` chords.
-
-        Corners stay.
-        """
+        """Return the airfoil smoothed by splines within `tolerance` chords of its points; corners stay."""
         from meshonet.geometry.shapes.airfoil.smooth import smooth_ring, smoothing_notes
 
         ring, most = smooth_ring(self._section, self.nose_radius, tolerance * self.chord)
