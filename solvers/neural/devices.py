@@ -38,10 +38,10 @@ def solve_on(
 ) -> list[Solution]:
     """Return a grid inside each boundary, computed by torch on `device`.
 
-    Boundaries with equal node counts are computed in one batch. `polish` is ``auto``, ``off`` or, for airfoil
-    operators, a number of Picard steps. `instead` makes the grids that cannot be computed on the device.
-    Raises InputError if torch or the device is missing, or if `boundaries` or `polish` do not suit the
-    operator. Raises MemoryError if the device has too little memory.
+    Boundaries with equal node counts are computed in one batch. `polish` selects improving steps after the
+    network: ``auto``, ``off`` or, for airfoil operators, a number of Picard steps. `instead` makes the grids
+    that cannot be computed on the device. Raises InputError if torch or the device is missing, or if
+    arguments do not suit the operator. Raises MemoryError if the device has too little memory.
     """
     if not operator.batched:
         raise InputError(f"model {operator.name} has no grids on a device", "leave {device} out")

@@ -25,7 +25,7 @@ class Team:
         return self.rank == 0
 
     def share(self, rows: Tensor) -> tuple[Tensor, float]:
-        """Return the part of a batch `rows` that this process computes, and its weight in the mean.
+        """Return the part of a batch `rows` that this process computes, and its weight in the batch's mean.
 
         Every process must compute a step; a process without a part gets the first row, with weight 0.
         """

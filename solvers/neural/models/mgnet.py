@@ -60,7 +60,7 @@ class MGNet(Architecture):
         return scaled * net["fixed/size"][:, None] + net["fixed/centre"][:, None]
 
     def which(self, w: Weights, seen: Any) -> Any:
-        """Return the index of the network whose geometry has the nearest sensors, for each of `seen`."""
+        """Return for geometries, given by boundary points `seen`, the indices of the nearest networks."""
         return ((seen[:, None] - w["fixed/sensors"][None]) ** 2).sum(-1).sum(-1).argmin(1)
 
     def check(self, w: Weights, inputs: Weights) -> None:

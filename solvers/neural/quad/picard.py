@@ -28,9 +28,9 @@ def approach(
 ) -> tuple[Any, Any]:
     """Return grids nearer to Winslow's solution than `z`, with the same boundaries, and the last Picard step.
 
-    Each step inverts, by sine transforms, an operator with constant coefficients: means over the domain of
-    alpha / (alpha + gamma) and gamma / (alpha + gamma). Differences have three quarters of their leading
-    truncation error removed. ::
+    Each step inverts, by sine transforms, an operator with constant coefficients: the means over the domain
+    of alpha / (alpha + gamma) and gamma / (alpha + gamma). Three quarters of the leading truncation error of
+    differences are removed. ::
 
         alpha z_xixi - 2 beta z_xieta + gamma z_etaeta = 0,
         alpha = |z_eta|^2, beta = z_xi . z_eta, gamma = |z_xi|^2        of the previous iterate
