@@ -22,7 +22,7 @@ def solve(matrix: Any, right: Any) -> Floats:
     """Return the solutions x of ``matrix @ x = right`` by Gaussian elimination with partial pivoting.
 
     The matrices are (..., m, m). `right` is (..., m), a vector per matrix, or (..., m, n), with the same
-    leading axes. The result has its shape. Raises ValueError: a matrix is singular.
+    leading axes. The result has the shape of `right`. Raises ValueError: a matrix is singular.
     """
     left = np.array(matrix, np.float64, order="C")
     values = np.asarray(right, np.float64)

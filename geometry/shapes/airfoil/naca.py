@@ -56,8 +56,8 @@ def naca_points(designation: str, n: int = POINTS) -> Floats:
 def thickness(x: Floats, ratio: float, *, sharp: bool = False) -> Floats:
     """Return the half thickness in chords, at `x` (any shape, 0 to 1), of a NACA section.
 
-    y = 5 t (0.2969 √x - 0.1260 x - 0.3516 x² + 0.2843 x³ - 0.1015 x⁴), t = `ratio`; `sharp`: 0.1036 at the
-    end.
+    With t = `ratio`, it is 5 t (0.2969 √x - 0.1260 x - 0.3516 x² + 0.2843 x³ - 0.1015 x⁴). If `sharp`, 0.1036
+    replaces 0.1015.
     """
     last = -0.1036 if sharp else -0.1015
     inner = 0.2969 * np.sqrt(x) + x * (-0.1260 + x * (-0.3516 + x * (0.2843 + x * last)))
