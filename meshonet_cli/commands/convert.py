@@ -48,11 +48,11 @@ def convert(
     ),
     plot3d: str | None = _output(
         metavar="WORDS", help="Variant of the Plot3D file to write or, if the output has another format, to "
-        "read. Give words with commas between them, at most one of each group: ascii/binary/fortran, "
+        "read: words with commas between them, at most one of each group. ascii/binary/fortran, "
         "multi/single, 2d/3d, no-iblank/iblank, little/big, float64/float32; for reading also whole/planes; "
         "for writing also span-k/span-i/span-j. The documentation's page on conventions of formats explains "
-        "them. [default: for writing the first word of each group, unless the extension implies another; for "
-        "reading as recognised]",
+        "them. [default: for writing the first of each group or as the extension implies; for reading as "
+        "recognised]",
     ),
     swap: bool = _option(
         default=False, help="Exchange xi and eta of a four-sided grid. The result is still right-handed.",

@@ -25,8 +25,8 @@ class LayoutFiles(Files):
 
     output: Annotated[str, o.option_of(o.IO)(
         "-o", "--output", metavar="LAYOUT.json", help="File to write, or - for standard output. For several "
-        "inputs: a pattern such as 'dir/{stem}.json'. {stem} stands for the name of the input file, {name} "
-        "for that of the shape, {index} for its number from 0.",
+        "inputs: a pattern such as 'dir/{stem}.json', with {stem} for the name of the input file, {name} for "
+        "that of the shape, or {index}.",
     )]
     from_format: o.From = None
     skip_existing: o.SkipExisting = False

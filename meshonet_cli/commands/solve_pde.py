@@ -59,8 +59,8 @@ def solve_pde(
     coarse: str = _option(
         default="auto", metavar="auto|off|N", help="Solve on at most N x N nodes and interpolate to --res by "
         "splines. off: solve on all nodes. auto: in four-sided domains, 257 for winslow with more than 512 "
-        "nodes along a side, 129 for variational with more than 257; in all other cases, and with --tol, "
-        "--max-cycles or --initial, off.",
+        "nodes along a side, 129 for variational with more than 257; else, and with --tol, --max-cycles or "
+        "--initial, off.",
     ),
     refine: o.Refine = 0,
     initial: str | None = _option(

@@ -34,7 +34,7 @@ def stack(
         metavar="SECTIONS.toml", show_default=False,
         help="File that describes the shape, or - for standard input. A wing or blade: sections with an "
         "airfoil, a chord and a position. A duct: sections with an outline. A blade row: profiles, hub and "
-        "shroud. An aircraft: a body and wings. The guides in the documentation list the entries of each.",
+        "shroud. An aircraft: a body and wings. The documentation's guides list the entries.",
     )],
     files: VolumeFiles,
     run: o.RunOptions,

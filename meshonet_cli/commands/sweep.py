@@ -32,8 +32,8 @@ def sweep(
     names: Annotated[list[str], typer.Argument(
         metavar="OUTLINE... [PATH]", show_default=False,
         help="Cross-sections, each swept to a grid of its own: circle:RADIUS or a file with a closed curve, "
-        "a domain, a layout or a planar grid. The last argument is the path, unless --revolve is given: a "
-        "TOML file with lines and arcs, or a file with one point x y z per line.",
+        "a domain, a layout or a planar grid. Without --revolve the last argument is the path: a TOML file "
+        "with lines and arcs, or a file with one point x y z per line.",
     )],
     run: o.RunOptions,
     gates: o.GateOptions,

@@ -10,8 +10,8 @@ _option = option_of(BOUNDARY_LAYER)
 # fmt: off
 WallAngle = Annotated[float | None, _option(
     metavar="DEGREES", help="Angle in degrees between grid lines and walls, for --method steger-sorenson. It "
-    "applies to sides with a first cell. If no side has one, it applies to south and north, or to the wall "
-    "of a body. [default: 90]",
+    "applies to sides with a first cell; if there are none, to south and north, or to the wall of a body. "
+    "[default: 90]",
 )]
 Slide = Annotated[bool | None, _option(
     "--slide/--no-slide", help="Move wall nodes along the walls until grid lines leave the walls at right "
@@ -22,10 +22,10 @@ Slide = Annotated[bool | None, _option(
 FirstCell = Annotated[str | None, _option(
     "--first-cell", "--wall-spacing", metavar="H|WALL=H,...", help="Height of the first cell at walls, in "
     "the unit of the input. In a one-block grid around a body the unit is the chord of an airfoil, or the "
-    "largest extent of another body. H applies to the body; to south, north and sides named wall of a "
-    "four-sided domain; to the holes of a multi-block grid. In a multi-block grid without holes, of which a "
-    "side is named inlet, outlet, axis or symmetry, it applies to all its other sides. WALL=H,WALL=H applies "
-    "to the named walls only. [default: no layers]",
+    "largest extent of another body. WALL=H,WALL=H applies to the named walls only. H applies to the body; "
+    "to south, north and sides named wall of a four-sided domain; to the holes of a multi-block grid or, "
+    "without holes, to the sides not named inlet, outlet, axis or symmetry if another side has such a name. "
+    "[default: no layers]",
 )]
 YPlus = Annotated[float | None, _option(
     metavar="Y", help="y+ at the height of the first cell, instead of --first-cell; at the cell centre it is "

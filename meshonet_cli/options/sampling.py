@@ -24,9 +24,9 @@ _option = option_of(SAMPLING)
 # fmt: off
 Resolution = Annotated[str | None, _option(
     "--res", metavar="N|NIxNJ[xNK]", help="Number of nodes: N along every direction, or NI along xi (around "
-    "a body), NJ along eta (away from it) and NK along zeta (volumes). If --growth determines the number of "
-    "rows, N is NI. In a multi-block grid N is the number of cells along its largest extent. [default: the "
-    "nodes of the input; 200x100 for airfoils and outlines]",
+    "a body), NJ along eta (away from it) and NK along zeta (volumes). With --growth, N is NI. In a "
+    "multi-block grid N is the number of cells along its largest extent. [default: the nodes of the input; "
+    "200x100 for airfoils and outlines]",
 )]
 
 
@@ -46,7 +46,7 @@ class SamplingOptions:
         "smaller cells at both ends of a side, or at leading and trailing edge. curvature: smaller cells "
         "also at bends. conformal: equal steps on the circle to which a conformal map takes the body. auto: "
         "curvature in C grids and with a first cell (not in tfi); else conformal around airfoils and smooth "
-        "bodies (tanh with --le-spacing or --te-spacing); else uniform.",
+        "bodies; else uniform.",
     )
     le_spacing: float | None = _option(
         metavar="H", help="Length of the wall cells at the leading edge, in chords. [default: set by "
@@ -58,8 +58,8 @@ class SamplingOptions:
     )
     te: Literal["auto", "exact", "round", "wedge"] = _option(
         default="auto", help="Shape of a blunt trailing edge. exact: unchanged. round: corners rounded. "
-        "wedge: closed by a wedge, up to four base heights long. auto: wedge in C grids that are not "
-        "marched, and in C grids without a first cell if the base is at most 0.005 chords high; else exact.",
+        "wedge: closed by a wedge. auto: wedge in C grids that are not marched, and in C grids without a "
+        "first cell if the base is at most 0.005 chords high; else exact.",
     )
     far_field: float | None = _option(
         metavar="R", help="Smallest distance of the far field from the middle of the body. Its unit is the "
