@@ -170,8 +170,8 @@ HOLES = """
 ## Plates with a hole, from the MeshONet paper, 101 x 101
 
 The shapes are square plates of side 2 with a round hole of radius 0.35. The height of the hole is measured
-from the middle of the plate. *MeshONet* is the network of the paper, *MeshONet-hard* a variant of it. Both
-were [trained](paper/index.md) on 30 plates with a hole; `hole-winslow` was not trained on such plates.
+from the middle of the plate. *MeshONet* is the network of the paper, *MeshONet-hard* a variant of it; both
+were [trained](paper/index.md) on 30 such plates, `hole-winslow` on none.
 
 The first table gives the median distance to Winslow's solution and, in brackets, the number of grids with
 folded cells.
@@ -190,7 +190,7 @@ HEAD = """# The neural operator for bodies: accuracy and time
 Read this page to decide whether the neural network `hole-o` is accurate enough for your O grids around
 bodies. `hole-o` predicts the grid of the variational solver. A second output of the same
 [network](../theory/operators.md), `hole-winslow`, predicts the grid of Winslow's solver. The page compares
-both with the solvers, on random bodies and on plates with a hole. CPU times are medians, for one thread.
+both with the solvers. CPU times are medians, for one thread.
 
 - *TFI*: transfinite interpolation.
 - *Winslow*, *variational*: the solvers `solve-pde --method winslow` and `solve-pde --method variational`.
@@ -211,8 +211,7 @@ TAIL = """
 
 - **Default**: `infer` without `--model` uses `hole-o` only for [compact
   bodies](../theory/operators.md) for which the conformal map fails.
-- **Quality**: all 44 grids of `hole-o --polish 5` are valid, with a gain of 93 to 96 %. Of Winslow's grids on
-  129 x 65 nodes, 24 % have folded cells.
+- **Quality**: all 44 grids of `hole-o --polish 5` are valid, with a gain of 93 to 96 %.
 - **Time**: `hole-o --polish 5` takes about three times as long as Winslow's solver, and a third of the time
   of the variational solver.
 - **Spacing**: in the grids of `hole-o` and of the variational solver, grid lines cluster where the body is

@@ -82,8 +82,8 @@ CONCLUSIONS = """
 - **Time**: by default a Winslow grid takes 0.03 to 0.05 s on 400x400 nodes, and 3.5 to 4.0 s on 3200x3200
   nodes. A residual of 1e-8 takes two to four times as long.
 - **Folded cells**: only grids of the wrench have folded cells. `solve-pde` repairs them.
-- **First cells**: with the control functions of Thomas and Middlecoff the first cells on the arch have the
-  prescribed height. On the hexagon their median height is 1.8 times the prescribed height.
+- **First cells**: with the control functions of Thomas and Middlecoff the median first-cell height is the
+  prescribed height on the arch, and 1.8 times this height on the hexagon.
 - **Channels**: use `winslow --slide` for grid lines normal to the walls, if nodes may move along the walls.
   The angles to the wall normal are then at most 0.19 degrees; without `--slide` they are 6 to 37 degrees.
   `winslow --slide` takes 81 to 195 ms, `steger-sorenson` 359 to 410 ms.

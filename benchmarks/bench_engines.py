@@ -64,8 +64,8 @@ The same command now makes grids for {count} airfoils, in part files of {size} g
 parts are written, one process is killed (SIGKILL).
 
 - *parts written*: number of complete part files after the command has ended.
-- *parts generated later*: number of parts that are added by the same command with `--skip-existing`. All
-  grids are then bitwise identical to those of an undisturbed run.
+- *parts generated later*: number of parts that the same command then adds with `--skip-existing`. All grids
+  are then bitwise identical to those of an undisturbed run.
 
 | killed process | message of the command | exit code | parts written | parts generated later |
 | --- | --- | ---: | ---: | ---: |

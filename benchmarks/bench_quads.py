@@ -223,8 +223,7 @@ HEAD = """# The neural operator for four-sided domains: accuracy and time
 Use this page to decide whether the grids of the neural network `quad-general` are good enough for your
 batches of four-sided domains. `quad-general` predicts the grid of the variational solver. A second output of
 the same [network](../theory/operators.md), `quad-winslow`, predicts the grid of Winslow's solver. The page
-compares both with the solvers, on random domains, an arch, and the shapes of the MeshONet paper. CPU times
-are medians, for one thread.
+compares both with the solvers. CPU times are medians, for one thread.
 
 - *TFI*: transfinite interpolation.
 - *Winslow*, *variational*: the solvers `solve-pde --method winslow` and `solve-pde --method variational`.
@@ -249,7 +248,7 @@ TAIL = """
   the solver. Up to 0.9 % of the grids have folded cells, which `infer` repairs. With `--polish 2` all 372
   grids of the first three tables are valid, and a grid takes 5.5 ms in a batch.
 - **Single precision**: in Python `load("quad-general").solve(boundaries, "off", dtype="float32")` takes 0.6
-  ms of CPU time per grid. 
+  ms of CPU time per grid.
 - **Winslow's grid**: use `solve-pde`. On 65 x 65 nodes, Winslow's solver takes 2.8 ms and `quad-winslow` 4.0
   ms.  On 385 x 385 nodes, `quad-winslow` is about as fast and as accurate as *Winslow --coarse 65*.
 """

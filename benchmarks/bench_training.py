@@ -215,9 +215,9 @@ def page(rows: list[Row]) -> str:
 
 
 NOTE = """\
-Read this page to choose `--batch` and `--points` of `meshonet train --model meshonet`. The page compares the
-speed and the loss of six training loops for [the network of the MeshONet paper](../theory/paper-models.md),
-on 30 arches (geometries) of 101 x 101 nodes. Times are CPU times of one thread.
+Read this page to choose `--batch` and `--points` of `meshonet train --model meshonet`. It compares the speed
+and the loss of six training loops for [the network of the MeshONet paper](../theory/paper-models.md), on 30
+arches (geometries) of 101 x 101 nodes. Times are CPU times of one thread.
 
 - *one geometry per step*: the scheme of the paper. A step uses *all points* of the grid or *1,200 random
   points*; the paper does not say which. The learning rate is 0.001.

@@ -54,9 +54,9 @@ Use this page to find the quality and the CPU time of volume grids of random [wi
 random blades between two walls, and of three [pipes](../guide/pipes.md). Times are for one thread of
 {machine}.
 
-Each of {count} wings has two sections, drawn from {files} airfoil files. The taper is 0.25 to 1 and the twist
--8 to 4 degrees. The tip is displaced by -0.2 to 0.8 spans downstream and by -0.1 to 0.25 spans upwards. The
-{count} blades are drawn in the same way.
+Each of {count} wings and {count} blades has two sections, drawn from {files} airfoil files. The taper is 0.25
+to 1 and the twist -8 to 4 degrees. The tip is displaced by -0.2 to 0.8 spans downstream and by -0.1 to 0.25
+spans upwards.
 
 | name | nodes around a section | nodes along the span | nodes from the wall to the far field \
 | first-cell height, chords | far field, chords |

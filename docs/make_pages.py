@@ -255,10 +255,9 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "Each cell has a largest angle. The mean and the maximum of these angles are smaller in the\n"
-        "variational grid than in Winslow's grid. The predicted variational grid reaches "
-        f"{100 * gain['mean_gain']:.0f} % of\n"
-        f"the decrease of the mean, and {100 * gain['max_gain']:.0f} % of the decrease of the maximum.",
+                        "From Winslow's grid to the variational grid, the mean and the maximum of the cells' largest angles\n"
+        f"decrease. The predicted variational grid reaches {100 * gain['mean_gain']:.0f} % and "
+        f"{100 * gain['max_gain']:.0f} % of these decreases.",
     ]
     return lines
 

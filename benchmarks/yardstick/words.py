@@ -25,6 +25,7 @@ There are {count} shapes of each kind, drawn with seed {seed}. All boundary node
 In the tables, the first six kinds are *four-sided*, the last three *body*.
 
 - `infer --model NAME`: a [network shipped with meshonet](models.md).
+
 - *grids*: number of shapes for which the program makes a grid.
 - *folded*: number of grids with folded cells and, in brackets, number of folded cells.
 - *largest angle*: largest cell corner angle of a grid, mean / maximum over the grids.
@@ -51,14 +52,13 @@ NETWORKS = """
 
 ## Networks trained for a short time
 
-The names after `train --model` are the [networks of the MeshONet paper](../theory/paper-models.md) and the
-networks with which the paper compares them. All were trained for a short time:
+The names after `train --model` are the [networks of the MeshONet paper](../theory/paper-models.md) and its
+baselines.
 
 - `mgnet` and `meshnet` are trained with 500 steps for one geometry, here for the first shape of each kind.
   The training is part of their CPU time.
 - The other networks are trained with 300 steps (15 epochs), once on 600 four-sided domains with 33 x 33
-  nodes, and once on 576 bodies with 65 x 33 nodes. These shapes come from `sample-boundary --family
-  four-sided` and `--family bodies`; the training grids are solutions of Winslow's equations.
+  nodes, and once on 576 bodies with 65 x 33 nodes. The training grids are solutions of Winslow's equations.
 - The given boundary nodes replace the predicted boundary nodes (`infer --answer pasted`). Folded cells are
   not repaired.
 """

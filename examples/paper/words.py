@@ -69,8 +69,8 @@ chosen after looking at all grids, including the test grids.
 RACE = """
 ## Loss on one budget
 
-All networks are trained on the same shapes, with the same learning-rate schedule and the same random points
-in each step. Values are mean ± standard deviation over the random seeds.
+All networks are trained on the same shapes, with the same learning rates and the same random points in each
+step. Values are mean ± standard deviation over the random seeds.
 
 - *loss*: mean square error at the end of training. `meshonet-hard` predicts a correction of an initial grid,
   so its loss cannot be compared with other losses.
@@ -80,26 +80,25 @@ in each step. Values are mean ± standard deviation over the random seeds.
 SHELF = """
 ## Every model on every case
 
-All networks are trained on all cases with one budget: 300 epochs (9,000 shapes) on grids of 51 x 51 nodes,
-the same schedule and the same random points. *Error* is the relative L2 distance of the network output,
-median over the test grids. The second table gives the errors as mean ± standard deviation of two random
-seeds. The smallest error of each row is bold.
+All networks are trained on all cases with a smaller budget: 300 epochs (9,000 shapes) on grids of 51 x 51
+nodes. *Error* is the relative L2 distance of the network output, median over the test grids. The second table
+gives the errors as mean ± standard deviation of two random seeds. The smallest error of each row is bold.
 """
 
 PHYSICS = """
 ## Physics-informed networks
 
 Each of these networks is trained for one geometry, the arch of [mesh refinement](#mesh-refinement) with 101 x
-101 nodes. The training time is therefore the time to generate a grid. The paper says without figures that
-such networks are as good as the PDE solver but do not generalise.
+101 nodes. The network must be trained anew for each geometry, so the training time is the time to generate a
+grid. The paper says without figures that such networks are as good as the PDE solver but do not generalise.
 """
 
 TIME = """
 ## Mesh refinement
 
-The table gives seconds from boundary nodes in memory to grid nodes in memory, for an arch that was not used
-in training. For more than 512² nodes, `solve-pde` solves on 257² nodes and interpolates. A dash means not
-measured. Our programs ran in one thread on {machine}; the paper's MeshONet ran on an RTX 4090.
+The table gives seconds from boundary to grid, both in memory, for an arch that was not used in training. For
+more than 512² nodes, `solve-pde` solves on 257² nodes and interpolates. A dash means not measured. Our
+programs ran in one thread on {machine}; the paper's MeshONet ran on an RTX 4090.
 """
 
 MAPS = """
