@@ -7,7 +7,7 @@ from meshonet.geometry.errors import InputError
 
 
 def check_settings(boundary: Boundary, tol: float | None, max_cycles: int, initial: Grid | None) -> None:
-    """Raise InputError if the settings of an iterative solver are invalid for `boundary`."""
+    """Raise InputError if settings of an iterative solver are invalid, or do not fit `boundary`."""
     check_tolerances(tol, max_cycles)
     if initial is not None and initial.nodes.shape[:2] != (boundary.ni, boundary.nj):
         problem = f"the initial grid has {initial.ni}x{initial.nj} nodes, not {boundary.ni}x{boundary.nj}"
@@ -15,7 +15,7 @@ def check_settings(boundary: Boundary, tol: float | None, max_cycles: int, initi
 
 
 def check_tolerances(tol: float | None, max_cycles: int | None) -> None:
-    """Raise InputError unless `tol` is between 0 and 1 and `max_cycles` is positive; either may be None."""
+    """Raise InputError unless `tol` is None or between 0 and 1, and `max_cycles` None or positive."""
     if tol is not None and not 0 < tol < 1:
         raise InputError(f"tolerance {tol:g} is not between 0 and 1", "use e.g. 1e-5", parameter="tol")
     if max_cycles is not None and max_cycles < 1:
@@ -23,14 +23,14 @@ def check_tolerances(tol: float | None, max_cycles: int | None) -> None:
 
 
 def initial_nodes(boundary: Boundary, initial: Grid) -> Floats:
-    """Return a planar copy of the nodes of `initial` with the edges of `boundary`; seams are kept."""
+    """Return a planar copy of the nodes of `initial`, with the edges of `boundary`."""
     nodes = initial.nodes.copy(order="K")
     put_edges(nodes, boundary)
     return nodes
 
 
 def put_edges(nodes: Floats, boundary: Boundary) -> None:
-    """Put the edges of `boundary` into `nodes` (ni, nj, 2), and close the seam of an O grid, in place."""
+    """Copy the edges of `boundary` into `nodes` (ni, nj, 2), and close the seam of an O grid, in place."""
     nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
     if boundary.periodic:
         nodes[-1] = nodes[0]

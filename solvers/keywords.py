@@ -10,11 +10,10 @@ Request = TypeVar("Request")
 
 
 def request_from(kind: type[Request], what: str, parameters: Mapping[str, Any]) -> Request:
-    """Return a request of class `kind`; ``wall_spacing`` is another name of ``first_cell``.
+    """Return a request of the class `kind`; ``wall_spacing`` is another name of its ``first_cell``.
 
-    `what` is the kind of grid in messages, such as ``a row``.
-
-    Raises InputError: as `kind`; a parameter that `kind` does not have.
+    Raises InputError as `kind`, and for an unknown parameter. `what` is the kind of grid in messages: ``a
+    row``.
     """
     named = {"first_cell" if name == "wall_spacing" else name: each for name, each in parameters.items()}
     known = {each.name for each in fields(kind)}  # type: ignore[arg-type]
@@ -23,7 +22,7 @@ def request_from(kind: type[Request], what: str, parameters: Mapping[str, Any]) 
 
 
 def refuse_given(what: str, options: Mapping[str, object]) -> None:
-    """Raise InputError for the first of the named `options` whose value is neither None nor False."""
+    """Raise InputError if one of the `options` is neither None nor False; `what` does not have it."""
     for name, value in options.items():
         if value is not None and value is not False:
             raise InputError(f"{what} has no {{{name}}}", f"leave {{{name}}} out")

@@ -12,7 +12,7 @@ from meshonet.solvers.sparse import SparseMatrix, SparsePattern
 
 @dataclass(frozen=True)
 class Residuals:
-    """Residuals of one kind, linearised at the current unknowns."""
+    """Residuals of one kind, linearised at the current values of the unknowns."""
 
     derivatives: Floats  # (k, m) derivatives of each residual with respect to its m unknowns
     weight: Floats  # (k,) second derivatives of the total sum with respect to each residual
@@ -20,13 +20,13 @@ class Residuals:
 
 
 class NormalEquations:
-    """The normal equations, with an elimination order that is used in every step.
+    """Normal equations of a least-squares problem; all steps use the same elimination order.
 
     Parameters
     ----------
     size : number n of unknowns, or of pairs of unknowns.
-    kinds : for each kind of residuals, the indices (k, m) of the unknowns, -1 for values that are fixed.
-    block : 2 if indices are those of pairs of unknowns; then derivatives are (k, 2 m).
+    kinds : for each kind of residuals, the indices (k, m) of its unknowns; -1 marks a fixed value.
+    block : 2 if the indices are those of pairs of unknowns; derivatives are then (k, 2 m).
 
     >>> equations = NormalEquations(1, [np.array([[0], [0]])])
     >>> two = Residuals(np.array([[1.0], [1.0]]), np.ones(2), np.array([-1.0, -3.0]))
@@ -55,10 +55,8 @@ class NormalEquations:
     def step(self, residuals: Sequence[Residuals], diagonal: Floats, slope: Floats) -> Floats:
         """Return the changes of the unknowns, (n,) or (2 n,).
 
-        `diagonal` and `slope`, of the same shape, are second and first derivatives of terms with a single
-        unknown.
-
-        Raises SolverError: the equations are singular.
+        `diagonal` and `slope`, of the same shape, have the second and the first derivatives of additional
+        terms, each with one unknown. Raises SolverError if the equations are singular.
         """
         size, block = self._shape
         values, right = np.zeros(self.pattern.entries * block**2), -slope.reshape(size, block)

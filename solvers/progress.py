@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Cycle:
-    """State of the finest grid after a cycle."""
+    """State of the finest grid after a solver cycle."""
 
     method: str  # name of the method
     ni: int  # nodes of the grid
@@ -36,12 +36,12 @@ _listeners: ContextVar[tuple[Listener, ...]] = ContextVar("cycles", default=())
 
 
 def listening(listener: Listener) -> AbstractContextManager[None]:
-    """Return a context in which `listener` is called after every cycle, in the thread of the cycle."""
+    """Return a context in which `listener` is called after each solver cycle, in the thread of the cycle."""
     return added(_listeners, listener)
 
 
 def listened_to() -> bool:
-    """Return whether there are listeners."""
+    """Return whether there is a listener."""
     return bool(_listeners.get())
 
 
@@ -49,7 +49,7 @@ def cycle_ended(
     method: str, nodes: Floats, number: int, residual: float, change: float | None = None,
     functional: float | None = None,
 ) -> None:  # fmt: skip
-    """Call the listeners after a cycle of `method` with the resulting `nodes` (ni, nj, 2)."""
+    """Call all listeners after a cycle of `method`, which gave `nodes` (ni, nj, 2)."""
     if not listened_to():
         return
     counts = nodes.shape[0], nodes.shape[1]
@@ -60,7 +60,7 @@ def cycle_ended(
 
 @dataclass(frozen=True)
 class HistoryRow:
-    """A cycle of a history."""
+    """One cycle of a history."""
 
     method: str  # name of the method
     ni: int  # nodes of the grid
@@ -75,7 +75,7 @@ class HistoryRow:
 
 
 class History:
-    """A listener that records the cycles of one solution."""
+    """Listener that records the cycles of a solution."""
 
     def __init__(self) -> None:
         self._rows: list[HistoryRow] = []
@@ -94,7 +94,7 @@ class History:
         )
 
     def of(self, solution: Solution) -> tuple[HistoryRow, ...]:
-        """Return the recorded rows of the solution's method; without cycles, one row with the result."""
+        """Return the recorded cycles of the solution's method; without cycles, one row with the result."""
         rows = tuple(row for row in self._rows if row.method == solution.method)
         if rows:
             return rows

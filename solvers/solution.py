@@ -31,7 +31,7 @@ class Outcome(Enum):
 
     @property
     def message(self) -> str:
-        """Advice on what to try next, with parameters by their names in Python."""
+        """Advice on what to try next; parameters have their Python names."""
         return spelled(self.value)
 
 
@@ -47,14 +47,13 @@ class Solution:
     outcome : how the computation ended.
     residual : norm of the residual relative to that of the TFI grid, if the method has one.
     cycles : number of cycles on the finest level, if the method has them.
-    path : stages after the method itself, such as ``("repair",)`` of the guard.
+    path : stages after the method itself, such as ``("repair",)``.
     seconds : wall-clock seconds by stage.
     notes : sentences for the user, for example about a restart.
-    boundary : boundary of the grid if it differs from the given boundary, because marching ends at its own
-        far field.
-    confidence : expected error of a network's answer.
+    boundary : boundary of the grid, if it is not the given one since a march ended at its own far field.
+    confidence : expected error of the grid of a neural operator.
     first_cells : prescribed first-cell heights by side, in the unit of the boundary.
-    dimensions : dimensions of the blade row or of the aircraft, if the grid belongs to one.
+    dimensions : dimensions of the blade row or aircraft, if the grid belongs to one.
     growth : prescribed largest ratio of neighbouring cells along lines from walls.
     """
 
@@ -75,7 +74,7 @@ class Solution:
 
 
 def timed(solve: Callable[P, Solution]) -> Callable[P, Solution]:
-    """Return `solve`, changed to add the seconds of each call to its solution as the stage ``grid``."""
+    """Return `solve`, changed so that its solution contains the seconds of the call as the stage ``grid``."""
 
     @wraps(solve)
     def run(*args: P.args, **kwargs: P.kwargs) -> Solution:

@@ -11,9 +11,9 @@ from meshonet.kernels._native import sparse_analyse, sparse_factor, sparse_multi
 
 
 class SparsePattern:
-    """Positions of the entries of a symmetric matrix, and the elimination order of its unknowns.
+    """Positions of the entries of a symmetric matrix, and an elimination order of its unknowns.
 
-    One pattern serves all matrices with these entries. The order is approximate minimum degree (Amestoy,
+    A pattern serves all matrices with the same positions. The order is approximate minimum degree (Amestoy,
     Davis, Duff, SIAM J. Matrix Anal. Appl. 17 (1996) 886-905).
 
     Parameters
@@ -21,7 +21,7 @@ class SparsePattern:
     size : number of rows, n.
     rows, columns : (m,) position of each entry, on one side of the diagonal. Entries at the same position are
         added.
-    block : number of unknowns per row, 1 or 2; with 2, entries are matrices (2, 2).
+    block : number of unknowns of a row, 1 or 2; with 2, entries are matrices (2, 2).
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class SparsePattern:
         return int(self.arrays[4][-1])
 
     def matrix(self, values: Floats) -> "SparseMatrix":
-        """Return the matrix with the `values` (m,) of the entries, for one unknown per row."""
+        """Return the matrix whose entries have these `values` (m,); rows must have one unknown."""
         summed = np.bincount(self.slot, np.asarray(values, dtype=np.float64), self.entries)
         return SparseMatrix(self, np.asarray(summed, dtype=np.float64))
 
@@ -63,7 +63,7 @@ class SparsePattern:
         return SolverError(f"a system of {self.size} equations is singular in row {row}")
 
     def factor(self, values: Floats) -> "Factor":
-        """Return the factors of the matrix with the `values` (m,) of the entries; see `SparseMatrix`."""
+        """Return the factors of the matrix whose entries have `values` (m,); see `SparseMatrix.factor`."""
         return self.matrix(values).factor()
 
 
@@ -75,7 +75,7 @@ class SparseMatrix:
     values: Floats  # values of the distinct entries, in the internal order of the pattern
 
     def times(self, x: Floats) -> Floats:
-        """Return the product A x, where x is (n,) or (n, k)."""
+        """Return the product of A and x, which is (n,) or (n, k)."""
         columns = np.ascontiguousarray(x, dtype=np.float64).reshape(self.pattern.size, -1)
         product = np.empty_like(columns)
         sparse_multiply(self.pattern.arrays, self.values, columns, product)
@@ -85,9 +85,7 @@ class SparseMatrix:
         """Return the factors of A = P^T L D L^T P; A must be positive definite or quasi-definite.
 
         A quasi-definite matrix is ((K, C^T), (C, -E)) with positive definite K and E: Vanderbei, SIAM J.
-        Optim. 5 (1995) 100-113.
-
-        Raises SolverError: a pivot is zero or not finite.
+        Optim. 5 (1995) 100-113. Raises SolverError if a pivot is zero or not finite.
         """
         factor, failed = sparse_factor(self.pattern.arrays, self.values)
         if failed >= 0:
@@ -97,20 +95,20 @@ class SparseMatrix:
 
 @dataclass(frozen=True, eq=False)
 class Factor:
-    """A factored matrix A."""
+    """A matrix A in factored form."""
 
     pattern: SparsePattern
     arrays: tuple[NDArray[np.intc], Floats, Floats]
     """Row indices and values of L, column by column, without its unit diagonal, and pivots (n,)."""
 
     def solve(self, right: Floats) -> Floats:
-        """Return the solution x of A x = right, both (n,) or (n, k)."""
+        """Return the solution x of A x = right; both are (n,) or (n, k)."""
         x = np.array(right, dtype=np.float64, order="C").reshape(self.pattern.size, -1)
         sparse_solve(self.pattern.arrays, self.arrays, x)
         return x.reshape(np.shape(right))
 
     def refine(self, matrix: SparseMatrix, right: Floats, steps: int) -> Floats:
-        """Return the solution for a `matrix` close to A, after `steps` steps of iterative refinement."""
+        """Return the solution for a `matrix` close to A by `steps` steps of iterative refinement."""
         x = self.solve(right)
         for _ in range(steps):
             x += self.solve(right - matrix.times(x))

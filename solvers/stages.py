@@ -18,7 +18,7 @@ Event = TypeVar("Event")
 def added(
     listeners: ContextVar[tuple[Callable[[Event], None], ...]], listener: Callable[[Event], None]
 ) -> Iterator[None]:
-    """Return a context in which `listener` is one of the `listeners` of this thread."""
+    """Return a context in which `listener` is one of the `listeners`, in this thread."""
     token = listeners.set((*listeners.get(), listener))
     try:
         yield
@@ -28,7 +28,7 @@ def added(
 
 @dataclass(frozen=True)
 class Stage:
-    """A stage that has started or advanced by a step."""
+    """A stage of a computation that has started or advanced."""
 
     name: str  # as in `Timings`
     unit: str = ""  # name of a step, such as level
@@ -42,19 +42,19 @@ _watchers: ContextVar[tuple[Watcher, ...]] = ContextVar("stages", default=())
 
 
 def watching(watcher: Watcher) -> contextlib.AbstractContextManager[None]:
-    """Return a context in which `watcher` is called at the start of every stage, in its thread."""
+    """Return a context in which `watcher` is called at the start of each stage, in the stage's thread."""
     return added(_watchers, watcher)
 
 
 def reached(name: str, unit: str = "", done: int = 0, count: int = 0) -> None:
-    """Call the watchers: the stage `name` starts, or has completed `done` of `count` steps."""
+    """Tell the watchers that the stage `name` starts, or has completed `done` of `count` steps."""
     for watcher in _watchers.get():
         watcher(Stage(name, unit, count, lambda: done))
 
 
 @contextlib.contextmanager
 def stage(name: str, seconds: Timings) -> Iterator[None]:
-    """Return a context for the stage `name`: watchers are called, and its time is added to `seconds`."""
+    """Return a context that is the stage `name`: watchers are told, and its time is added to `seconds`."""
     reached(name)
     begun = time.perf_counter()
     try:
@@ -65,9 +65,9 @@ def stage(name: str, seconds: Timings) -> Iterator[None]:
 
 @contextlib.contextmanager
 def filling(name: str, unit: str, marks: Floats) -> Iterator[None]:
-    """Return a context in which a kernel overwrites `marks` (steps,), set to NaN, one after another.
+    """Return a context for a kernel that fills `marks` (steps,), one value per step.
 
-    Watchers are called with the number of overwritten values.
+    They are NaN at first; the watchers are told how many values are filled.
     """
     if not (watchers := _watchers.get()):
         yield

@@ -14,7 +14,7 @@ MOST_CELLS = 200_000_000
 
 @dataclass(frozen=True, kw_only=True)
 class VolumeRequest(FirstCell):
-    """Fields of `StackRequest` and `RowRequest`; lengths are in chords."""
+    """Fields that `StackRequest` and `RowRequest` have in common; lengths are in chords."""
 
     what: ClassVar[str]  # the kind of grid in messages
     fewest_cells: ClassVar[int]
@@ -28,12 +28,12 @@ class VolumeRequest(FirstCell):
     def of(cls, **parameters: Any) -> Self:
         """Return a request with these fields; ``wall_spacing`` is another name of ``first_cell``.
 
-        Raises InputError: a value out of its range; an unknown parameter.
+        Raises InputError if a value is out of its range or a parameter is unknown.
         """
         return request_from(cls, cls.what, parameters)
 
     def check_volume(self) -> None:
-        """Raise InputError for a growth ratio, number of cells or of threads out of range."""
+        """Raise InputError if the growth ratio or the number of cells or threads is out of range."""
         check_growth(self.growth)
         if self.cells is not None and not self.fewest_cells <= self.cells <= MOST_CELLS:
             remedy = f"use {self.fewest_cells} to {MOST_CELLS}"
@@ -42,6 +42,6 @@ class VolumeRequest(FirstCell):
             raise InputError(f"{self.threads} threads", "use 1 or more", parameter="threads")
 
     def height(self, unit: float = 1.0) -> float:
-        """Return the first-cell height in chords; `unit` is the reference length for y+, in chords."""
+        """Return the first-cell height in chords; `unit` is the reference length of y+, in chords."""
         height = super().height(unit)
         return DEFAULT_FIRST_CELL if height is None else height

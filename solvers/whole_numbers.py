@@ -28,7 +28,7 @@ Row = tuple[Mapping[int, float], float, float]
 
 
 def difference(first: Iterable[int], second: Iterable[int], low: float = 0.0, high: float = 0.0) -> Row:
-    """Return the constraint that bounds the difference of the sums of two sets of numbers."""
+    """Return a constraint: sum of numbers `first` - sum of numbers `second` is from `low` to `high`."""
     row: dict[int, float] = {}
     for run, sign in ((first, 1.0), (second, -1.0)):
         for number in run:
@@ -37,11 +37,10 @@ def difference(first: Iterable[int], second: Iterable[int], low: float = 0.0, hi
 
 
 def whole_numbers(wanted: Floats, least: Floats, rows: Sequence[Row]) -> Indices:
-    """Return integers n (k,) of at least `least` (k,) that satisfy the constraints.
+    """Return integers n (k,) that are at least `least` (k,), near `wanted` (k,), and satisfy constraints.
 
-    They minimise the sum of n / wanted + wanted / n, nearly that of squared logarithms of n / wanted.
-
-    Raises SolverError: there is no solution, or none was found.
+    They minimise the sum of n / wanted + wanted / n, which is nearly that of squared logarithms of n /
+    wanted. `rows` are the constraints. Raises SolverError if there is no solution or none was found.
     """
     if not len(wanted):
         return np.zeros(0, dtype=np.intp)

@@ -11,10 +11,10 @@ from meshonet.geometry.arrays import Floats
 
 @dataclass(frozen=True, eq=False)
 class Direction:
-    """One index direction of a level: node positions (n,), in units of the steps of the finest level.
+    """One index direction of a multigrid level: node positions (n,), in steps of the finest level.
 
-    Coarse nodes are every second node and the last node; the last step may be shorter. If `periodic`, the
-    last node is the first.
+    The next coarser level keeps every second node and the last node; its last step may be shorter. If
+    `periodic`, the last node is the first.
 
     >>> Direction(np.arange(8.0), periodic=False).coarse.positions
     array([0., 2., 4., 6., 7.])
@@ -25,7 +25,7 @@ class Direction:
 
     @property
     def cells(self) -> int:
-        """Count of cells."""
+        """Number of cells."""
         return len(self.positions) - 1
 
     @cached_property
@@ -35,14 +35,14 @@ class Direction:
 
     @cached_property
     def coarse(self) -> "Direction":
-        """The next coarser direction."""
+        """The same direction on the next coarser level."""
         return Direction(self.positions[self.kept], self.periodic)
 
     @cached_property
     def differences(self) -> tuple[Floats, Floats, Floats]:
-        """Weights (forward, backward, centred) at each node, (n,) each.
+        """Weights of the differences at each node: forward, backward and centred, (n,) each.
 
-        With steps h₋, h₊ around node k: x″ = 2/(h₋+h₊) [(x₊-x)/h₊ + (x₋-x)/h₋] and x′ = (x₊-x₋)/(h₋+h₊).
+        With the steps h₋ and h₊: x″ = 2/(h₋+h₊) [(x₊-x)/h₊ + (x₋-x)/h₋] and x′ = (x₊-x₋)/(h₋+h₊).
         """
         before, after = self._steps
         both = before + after
@@ -50,16 +50,16 @@ class Direction:
 
     @cached_property
     def reach(self) -> Floats:
-        """The longer of the two steps at each node, (n,)."""
+        """The longer of the two steps at each node (n,)."""
         return np.maximum(*self._steps)
 
     @cached_property
     def transfer(self) -> tuple[Floats, Floats, Floats, Floats]:
         """Weights of linear interpolation and of its transpose, the restriction: four arrays.
 
-        The first (n,) is the weight of the next coarse node at each fine node, 0 at coarse nodes. The others
-        (coarse n,) are the weights of the fine nodes before, at and after each coarse node, scaled by the
-        dual lengths of nodes so that a constant residual is preserved.
+        The first (n,) has for each fine node the weight of the next coarse node, 0 at coarse nodes. The
+        others (coarse n,) have for each coarse node the weights of the fine nodes before, at and after it.
+        They are scaled by the lengths of the dual cells, so that a constant residual is preserved.
         """
         before, after = self._steps
         length = (before + after) / 2
@@ -87,5 +87,5 @@ class Direction:
 
 @lru_cache(maxsize=16)
 def uniform(n: int, periodic: bool) -> Direction:
-    """Return the direction of n equally spaced nodes, cached for all solves with the same node counts."""
+    """Return the direction of n equally spaced nodes; it is cached."""
     return Direction(np.arange(float(n)), periodic)

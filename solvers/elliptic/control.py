@@ -15,26 +15,26 @@ STEEPEST = 2.0  # limit of the logarithm of step ratios on a boundary: a ratio o
 
 @dataclass(frozen=True, eq=False)
 class Factors:
-    """A function on the nodes (i, j) as a sum of products: Σ_t along[t, i] across[t, j]."""
+    """A function of the nodes (i, j) that is a sum of products: Σ_t along[t, i] across[t, j]."""
 
     along: Floats  # (terms, ni)
     across: Floats  # (terms, nj)
 
     @classmethod
     def none(cls, ni: int, nj: int) -> Factors:
-        """Return the zero function, a sum of no terms, on ni x nj nodes."""
+        """Return the zero function on ni x nj nodes, a sum without terms."""
         return cls(np.zeros((0, ni)), np.zeros((0, nj)))
 
     def values(self) -> Floats:
-        """Return the sum at every node, (ni, nj)."""
+        """Return the values of the function at all nodes (ni, nj)."""
         return np.asarray(product(self.along.T, self.across))
 
     def kept(self, i: Indices, j: Indices) -> Factors:
-        """Return the function on the nodes with indices `i` and `j`."""
+        """Return the function on only those nodes whose indices are in `i` and `j`."""
         return Factors(np.ascontiguousarray(self.along[:, i]), np.ascontiguousarray(self.across[:, j]))
 
     def scaled(self, part: float) -> Factors:
-        """Return the function times `part`."""
+        """Return the function multiplied by `part`."""
         return replace(self, along=part * self.along)
 
     def __add__(self, other: Factors) -> Factors:
@@ -44,17 +44,17 @@ class Factors:
 
 @dataclass(frozen=True, eq=False)
 class Controls:
-    """Control functions φ and ψ, kept as the logarithms l of the ratios of neighbouring steps.
+    """Control functions φ and ψ, stored as logarithms l of the ratios of neighbouring steps.
 
-    The equations are α (x_ξξ + φ x_ξ) - 2β x_ξη + γ (x_ηη + ψ x_η) = 0. On a level with step h,
-    φ = -(2/h) tanh(h l/2) (see ``stencil.h``), which is exact for geometric growth.
+    The equations are α (x_ξξ + φ x_ξ) - 2β x_ξη + γ (x_ηη + ψ x_η) = 0. On a level with the step h, φ =
+    -(2/h) tanh(h l/2), which is exact for geometric growth (``stencil.h``).
     """
 
     phi: Factors  # logarithm of the ratio of neighbouring steps along ξ and along η
     psi: Factors
 
     def scaled(self, part: float) -> Controls:
-        """Return both control functions times `part`."""
+        """Return both control functions multiplied by `part`."""
         return Controls(self.phi.scaled(part), self.psi.scaled(part))
 
     def __add__(self, other: Controls) -> Controls:
@@ -64,11 +64,9 @@ class Controls:
 def thomas_middlecoff(boundary: Boundary) -> Controls:
     """Return the control functions that propagate the spacing of the edges into the domain.
 
-    On an edge with arc length s, φ = -(x_ξ·x_ξξ)/(x_ξ·x_ξ) = -(ln s_ξ)_ξ, for grid lines that leave the edge
-    straight and orthogonally. Inside, φ and ψ are interpolated linearly between opposite edges. For an O
-    boundary, ψ is that on the cut.
-
-    Thomas and Middlecoff, AIAA J. 18 (1980) 652-656.
+    On an edge with arc length s, φ = -(x_ξ·x_ξξ)/(x_ξ·x_ξ) = -(ln s_ξ)_ξ. This assumes that grid lines leave
+    the edge straight and orthogonally. Inside, φ and ψ are interpolated linearly between opposite edges. For
+    an O boundary, ψ is that of the cut. Thomas and Middlecoff, AIAA J. 18 (1980) 652-656.
     """
     periodic = boundary.periodic
     up = np.linspace(0.0, 1.0, boundary.nj)
@@ -82,9 +80,9 @@ def thomas_middlecoff(boundary: Boundary) -> Controls:
 
 
 def step_ratios(edge: Floats, *, periodic: bool) -> Floats:
-    """Return log(step after / step before) (n,) at each node of an edge (n, 2), within ±`STEEPEST`.
+    """Return log(step after / step before) (n,) at each node of an edge (n, 2), limited to ±`STEEPEST`.
 
-    The ends of an open edge get the values of the neighbouring nodes.
+    The ends of an open edge get the values of their neighbours.
 
     >>> edge = np.array([[0.0, 0.0], [1.0, 0.0], [3.0, 0.0], [7.0, 0.0]])
     >>> np.exp(step_ratios(edge, periodic=False)).tolist()

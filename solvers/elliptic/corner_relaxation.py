@@ -23,10 +23,10 @@ Corner = tuple[str, int]
 
 
 class CornerPatch:
-    """The nodes in a `window` (two index ranges) at a corner of a `level`; other nodes are fixed.
+    """A `window` (two index ranges) of nodes at a corner of a multigrid `level`, for local relaxation.
 
-    Additional sweeps around re-entrant corners, where the solution is singular, restore most of the
-    convergence rate: Bai, Brandt, SIAM J. Sci. Stat. Comput. 8 (1987) 109-134.
+    The solution is singular at re-entrant corners. Additional sweeps there restore most of the convergence
+    rate: Bai, Brandt, SIAM J. Sci. Stat. Comput. 8 (1987) 109-134.
     """
 
     def __init__(
@@ -38,7 +38,7 @@ class CornerPatch:
         self._own = MultigridLevel(x, y, of_xi, of_eta, False, scratch, True)
 
     def smooth(self, forced: bool) -> None:
-        """Relax the nodes of the window in place, with the level's right-hand side if `forced`."""
+        """Relax the nodes of the window in place; the right-hand side is 0 unless `forced`."""
         level, own, window = self._level, self._own, self._window
         own.x[...], own.y[...] = level.x[window], level.y[window]
         if forced:
@@ -54,7 +54,7 @@ def _part(direction: Direction, nodes: slice) -> tuple[Floats, Floats, Floats]:
 
 
 def reentrant(edges: Four) -> list[Corner]:
-    """Return side and index of the re-entrant corners of a quad's `edges` (south, north, west, east)."""
+    """Return (side, node index) of each re-entrant corner inside the `edges` south, north, west, east."""
     sharp: list[Corner] = []
     for side, edge in zip(("south", "north", "west", "east"), edges, strict=True):
         outwards = -1.0 if side in {"south", "east"} else 1.0
@@ -66,7 +66,7 @@ def reentrant(edges: Four) -> list[Corner]:
 def patches(
     level: MultigridLevel, xi: Direction, eta: Direction, corners: list[Corner], scratch: Floats
 ) -> list[CornerPatch]:
-    """Return the patches of `level` around `corners`, which are given by indices on the finest level."""
+    """Return the patches of `level` around `corners`, whose indices are those of the finest level."""
     if min(xi.cells, eta.cells) < LEAST:
         return []
     return [CornerPatch(level, xi, eta, _window(xi, eta, side, index), scratch) for side, index in corners]

@@ -22,10 +22,10 @@ SWEEPS = 4  # sweeps there
 def sweep_kinks(
     nodes: Floats, boundary: Boundary, counts: tuple[int, int], *, only_better: bool = False
 ) -> bool:
-    """Relax planar `nodes` in place around the kinks of the boundary; return whether there are kinks.
+    """Relax planar `nodes` in place around the kinks of the boundary; return whether there are any.
 
-    `nodes` come from splines through a coarse grid of `counts` nodes; these splines are too smooth at kinks.
-    With `only_better`, the nodes around a kink are moved only if the largest angle becomes smaller.
+    `nodes` must come from splines through a coarse grid of `counts` nodes, which are too smooth at kinks.
+    With `only_better`, the nodes around a kink move only if the largest angle becomes smaller.
     """
     any_kinks = False
     steps = [(n - 1) / (m - 1) for n, m in zip(nodes.shape[:2], counts, strict=True)]

@@ -18,7 +18,7 @@ from meshonet.solvers.elliptic.corner_relaxation import CornerPatch, patches, re
 
 @dataclass(frozen=True)
 class Settings:
-    """Parameters of the multigrid cycles."""
+    """Parameters of multigrid cycles."""
 
     # a direction with this many cells or fewer is not coarsened further. 8 is too few for airfoils, 50 slow.
     coarsest: int = 16
@@ -26,10 +26,10 @@ class Settings:
 
 
 class Multigrid:
-    """The multigrid levels for planar `nodes` (ni, nj, 2) inside `edges` (south, north, west, east).
+    """Multigrid levels for planar `nodes` (ni, nj, 2) inside `edges` (south, north, west, east).
 
-    `nodes` are the finest level; they are changed in place, and initial values are ignored. `periodic` means
-    an O grid.
+    `nodes` belong to the finest level. They are changed in place; their initial values do not matter.
+    `periodic` means an O grid.
     """
 
     def __init__(
@@ -69,7 +69,7 @@ class Multigrid:
             self.control(controls)
 
     def control(self, controls: Controls) -> None:
-        """Set the control functions of all levels; local relaxation at corners is then omitted."""
+        """Set the control functions on all levels; there is then no local relaxation at corners."""
         self._patches = [[] for _ in self.levels]
         phi, psi = controls.phi, controls.psi
         for k, (level, (xi, eta)) in enumerate(zip(self.levels, self._directions, strict=True)):
@@ -80,17 +80,17 @@ class Multigrid:
             level.control((phi.along, phi.across), (psi.along, psi.across), xi.reach, eta.reach)
 
     def interpolate_edges(self, k: int) -> None:
-        """Fill level `k` with the transfinite interpolation of its edges."""
+        """Set the nodes of level `k` to the transfinite interpolation of its edges."""
         level = self.levels[k]
         interpolate(level.x, level.y, self._edges[k], self._along[k])
 
     def residual(self, k: int = 0) -> float:
-        """Return the root mean square of the residual of level `k`, with zero right-hand side."""
+        """Return the root mean square of the residual on level `k`, for a right-hand side of 0."""
         level = self.levels[k]
         return float(np.sqrt(level.residual(False) / level.x.size))
 
     def nested_iteration(self) -> float:
-        """Fill the finest level from coarser ones; return the residual of transfinite interpolation there."""
+        """Fill the finest level from coarser ones; return its residual for transfinite interpolation."""
         last = len(self.levels) - 1
         self.interpolate_edges(last)
         start = self.residual(last)
@@ -107,10 +107,10 @@ class Multigrid:
         return start
 
     def cycle(self, k: int = 0, forced: bool = False) -> float:
-        """Run one V-cycle from level `k`; return the root mean square of the coarse correction.
+        """Run one V-cycle from level `k`; return the root mean square of the coarse correction, a length.
 
-        With `forced`, the right-hand side of level `k` is used; otherwise it is 0. The correction, in the
-        unit of length, estimates the error before the cycle; on the coarsest level it is 0.
+        It estimates the error before the cycle; on the coarsest level it is 0. The right-hand side is that of
+        level `k` if `forced`, else 0.
         """
         if k == len(self.levels) - 1:
             self._relax_coarsest(forced, 1e-2, 10)
@@ -141,7 +141,7 @@ class Multigrid:
 
 
 def relax(nodes: Floats, sweeps: int) -> None:
-    """Relax the inner nodes of planar `nodes` (ni, nj, 2) in place by `sweeps` sweeps, on one level."""
+    """Relax the inner nodes of planar `nodes` (ni, nj, 2) in place by `sweeps` sweeps, on a single level."""
     xi, eta = (uniform(n, False).differences for n in nodes.shape[:2])
     scratch = np.empty(multigrid_scratch(nodes.shape[0] - 1, nodes.shape[1] - 1))
     MultigridLevel(nodes[..., 0], nodes[..., 1], xi, eta, False, scratch, False).smooth(False, sweeps)

@@ -33,20 +33,20 @@ def solve(
     boundary: Boundary, *, tol: float | None = None, max_cycles: int = 30, initial: Grid | None = None,
     controls: Controls | None = None, method: str = "winslow",
 ) -> Solution:  # fmt: skip
-    """Solve Winslow's equations, with control functions or without, for the nodes inside `boundary`.
+    """Solve Winslow's equations for the nodes inside `boundary`, with or without control functions.
 
-    The wake of a C boundary is fixed. The grid may be folded at re-entrant corners
+    The wake of a C boundary is fixed. At re-entrant corners the grid may be folded
     (`meshonet.solvers.pipeline.fallback`).
 
     Parameters
     ----------
-    tol : residual that ends the iteration, relative to the residual of the transfinite interpolation. None:
-        the iteration ends when the estimated error of the solution is below the discretisation error.
-    max_cycles : largest number of cycles.
-    initial : a grid with the same node counts, in place of nested iteration.
+    tol : residual at which the iteration ends, relative to that of the transfinite interpolation. None:
+        it ends when the estimated error of the solution is below the discretisation error.
+    max_cycles : largest number of multigrid cycles.
+    initial : grid with the same node counts from which the iteration starts; None: nested iteration.
 
-    Raises InputError: a setting is out of range; `initial` has other node counts. Raises SolverError: every
-    attempt diverged.
+    Raises InputError if a setting is out of range, or if `initial` has other node counts. Raises SolverError
+    if all attempts diverge.
     """
     check_settings(boundary, tol, max_cycles, initial)
     notes: tuple[str, ...] = ()
@@ -78,7 +78,7 @@ def solve(
 def solve_thomas_middlecoff(
     boundary: Boundary, *, tol: float | None = None, max_cycles: int = 30, initial: Grid | None = None
 ) -> Solution:
-    """Solve Winslow's equations with the control functions of `control.thomas_middlecoff`; see `solve`."""
+    """Solve Winslow's equations with the control functions of `thomas_middlecoff`; see `solve`."""
     return solve(
         boundary, tol=tol, max_cycles=max_cycles, initial=initial, controls=thomas_middlecoff(boundary),
         method="thomas-middlecoff",

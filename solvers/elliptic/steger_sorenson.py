@@ -37,20 +37,20 @@ def solve_steger_sorenson(
     boundary: Boundary, *, heights: Mapping[str, float] | None = None, angle: float = 90.0,
     tol: float | None = None, max_cycles: int = 30, initial: Grid | None = None,
 ) -> Solution:  # fmt: skip
-    """Solve Winslow's equations with sources that control angle and first-cell height at edges.
+    """Solve Winslow's equations with sources that control angles and first-cell heights at edges.
 
     Sources can make first cells only somewhat thinner. Notes state the remaining error of the angles, and
     whether sources were weakened because cells folded.
 
     Parameters
     ----------
-    heights : first-cell heights at the controlled sides of a quad or O boundary, in the unit of the boundary;
-        0: the height is free. None: south and north, or a body, with free heights.
+    heights : first-cell heights by controlled side of a quad or O boundary, in its unit; 0: the height is not
+        controlled. None: only angles are controlled, at south and north, or at the body.
     angle : angle in degrees between an edge and the lines that leave it.
     tol, max_cycles, initial : as in `solve`.
 
-    Raises InputError: a side that cannot be controlled; an angle out of range; the errors of `solve`. Raises
-    SolverError: every attempt diverged.
+    Raises InputError as `solve`, and if a side cannot be controlled or the angle is out of range. Raises
+    SolverError if all attempts diverge.
     """
     check_settings(boundary, tol, max_cycles, initial)
     heights = _checked(boundary, heights, angle)
@@ -74,7 +74,7 @@ def solve_steger_sorenson(
 
 
 def largest_lean(nodes: Floats, boundary: Boundary) -> float:
-    """Return the largest deviation from 90 degrees, in degrees, of lines at south and north, off corners."""
+    """Return the largest deviation, in degrees, of lines at south and north from 90 degrees, off corners."""
     sides = ("south", "north")
     edges = _edges(boundary, dict.fromkeys(sides, 0.0), 90.0, nodes)
     sine = max(float(np.abs(edge.errors(nodes)[0]).max()) for edge in edges)

@@ -20,15 +20,15 @@ LIMIT = 1.0  # largest logarithm of a step ratio due to a source
 
 
 class ControlledEdge:
-    """An edge (n, 2) at which angle and first-cell height are controlled.
+    """An edge (n, 2) at which sources control angles and first-cell heights.
 
-    Sources φ(i, j) = p(i) e^{-b j} along the edge and ψ(i, j) = q(i) e^{-b j} across decay inwards. On a
+    The sources decay inwards: φ(i, j) = p(i) e^{-b j} along the edge, ψ(i, j) = q(i) e^{-b j} across it. On a
     uniform grid with steps dx and dy, a Fourier mode of p with wave number κ/dy rotates lines by (dy/dx) p/(b
     + κ). Such a mode of q changes the logarithm of the height by q/(b + κ). A correction is therefore the
     error, with each Fourier mode multiplied by b + κ.
 
-    `across`: nodes from this edge to the opposite one; `periodic`: whether the edge is closed; `angle`: in
-    degrees, between the edge and the lines that leave it; `height`: of first cells, 0 if it is free.
+    `across` is the number of nodes to the opposite edge. `periodic` means a closed edge. `angle` is that
+    between edge and lines, in degrees. `height` is that of first cells, 0 if it is not controlled.
     """
 
     def __init__(
@@ -44,9 +44,9 @@ class ControlledEdge:
         self._count = across
 
     def errors(self, nodes: Floats) -> tuple[Floats, Floats]:
-        """Return two errors (n,): of the angle (as a sine), and of the logarithm of the first-cell height.
+        """Return the errors (n,) of the angle (as a sine) and of the logarithm of the first-cell height.
 
-        Both are reduced to 0 at corners and ends of the edge, where the angle cannot be prescribed.
+        Near corners and ends of the edge they are reduced to 0, since angles cannot be prescribed there.
         """
         lines = lines_from_side(nodes, self.side)
         lean = leaning(lines, self._tangent) - math.cos(math.radians(self.angle))
@@ -54,7 +54,7 @@ class ControlledEdge:
         return self._weight * lean, self._weight * high
 
     def correct(self, nodes: Floats, relaxation: float) -> None:
-        """Correct the sources by the errors of `nodes`, times `relaxation`."""
+        """Correct the sources by the errors of `nodes`; `relaxation` is a factor of the correction."""
         lean, high = self.errors(nodes)
         up = first_heights(lines_from_side(nodes, self.side))
         steps = self._steps
@@ -78,7 +78,7 @@ class ControlledEdge:
         return Controls(Factors(fade[None], across), Factors(fade[None], along))
 
     def resample(self, coarse: Self) -> None:
-        """Interpolate the sources from those of `coarse`, the same edge with other node counts."""
+        """Interpolate the sources from those of `coarse`, the same edge on a coarser grid."""
         n, m = self.sources.shape[1], coarse.sources.shape[1]
         place, few = np.linspace(0.0, 1.0, n), np.linspace(0.0, 1.0, m)
         factors = (m - 1) / (n - 1), (coarse._count - 1) / (self._count - 1)
@@ -113,7 +113,7 @@ def _stiffened(values: Floats, decay: float, flat: float, periodic: bool) -> Flo
 
 
 def lines_from_side(nodes: Floats, side: str) -> Floats:
-    """Return a view (n, m, 2) of `nodes` (ni, nj, 2): n lines of m nodes that leave `side`."""
+    """Return `nodes` (ni, nj, 2) as a view (n, m, 2): n lines that leave `side`, with m nodes each."""
     lines = nodes if side in ("south", "north") else np.swapaxes(nodes, 0, 1)
     return lines[:, ::-1] if side in ("north", "east") else lines
 
@@ -124,9 +124,9 @@ def first_heights(lines: Floats) -> Floats:
 
 
 def leaning(lines: Floats, tangent: Floats) -> Floats:
-    """Return the cosine (n,) of the angle between the unit `tangent` (n, 2) of a wall and `lines` (n, m, 2).
+    """Return the cosine (n,) of the angle between a wall with unit `tangent` (n, 2) and `lines` (n, m, 2).
 
-    At the wall, a line is tangent to the parabola through the first three nodes of the line.
+    The direction of a line at the wall is that of the parabola through its first three nodes.
     """
     a, b, c = lines[:, 0], lines[:, 1], lines[:, 2]
     first, second = np.hypot(*(b - a).T), np.hypot(*(c - b).T)

@@ -25,7 +25,7 @@ STEEPEST = 1.3  # growth beyond which marched grids have larger angles than vari
 
 
 def first_cell(boundary: Boundary) -> float:
-    """Return the default first-cell height for a C `boundary`, in its unit."""
+    """Return the default first-cell height of a C `boundary`, in its unit."""
     behind = boundary.wake
     wall = boundary.south[behind : boundary.ni - behind]
     smallest = float(np.hypot(*np.diff(wall, axis=0).T).min())
@@ -34,10 +34,10 @@ def first_cell(boundary: Boundary) -> float:
 
 
 def first_cell_around_base(width: float, away: float, chord: float, ni: int, nj: int) -> float:
-    """Return the first-cell height of a C grid that keeps a blunt base of this `width`.
+    """Return the default first-cell height of a C grid around a body with a blunt base of this `width`.
 
-    The height follows from the smallest cell length, at a sharp edge or on the base, and from `away`, the
-    distance to the far field.
+    It follows from the smallest cell length, at a sharp edge or on the base, from the distance `away` to the
+    far field, and from the node counts.
     """
     return _height(min(C_EDGE / ni * chord, COARSEST * width), away, nj)
 
@@ -48,10 +48,10 @@ def _height(smallest: float, away: float, nj: int) -> float:
 
 
 def march_by_default(boundary: Boundary) -> Solution | None:
-    """Return the C grid marched from `boundary`, or None if another method suits better.
+    """Return the C grid marched from `boundary`; None if another method suits better.
 
-    None is returned if the far-field nodes are given, if cells would grow by more than `STEEPEST`, or if
-    cells are folded.
+    That is so if the far-field nodes are given, if cells would grow by more than `STEEPEST`, or if cells
+    fold.
     """
     if boundary.wall is None:
         return None

@@ -23,7 +23,7 @@ _CLOSED_AHEAD, _ASIDE, _OPEN_AHEAD, _OPEN_MORE = 1.8, 0.055, 23.0, 0.015
 
 
 class Front:
-    """Level 0 of a march from an ``o`` or ``c`` boundary, and the distance that the last level must reach."""
+    """Level 0 of a march from an O or C boundary, and the distance that the last level must reach."""
 
     inner: float  # radius of the circle of the body's area
     slender: float  # 1 - l/L, with the perimeters L of the body and l of a circle of the same area
@@ -70,27 +70,27 @@ class Front:
         self.outer = self._far(boundary.north)
 
     def start(self) -> Floats:
-        """Return the nodes (n, 2) of level 0, without the repeated node of a closed front."""
+        """Return the nodes (n, 2) of level 0; the repeated node of a closed front is left out."""
         return self._south[:-1] if self._closed else self._south
 
     def reach(self, levels: Floats) -> float:
-        """Return the smallest distance from the centre to the last of the `levels` (2, m, n)."""
+        """Return the least distance from the centre of the body to the last of the `levels` (2, m, n)."""
         return float(np.hypot(*(levels[:, -1].T - self._middle).T).min())
 
     def nodes(self, levels: Floats) -> Floats:
-        """Return `levels` (2, m, n) as nodes (ni, m, 2)."""
+        """Return m `levels` (2, m, n) as nodes (ni, m, 2) of a grid."""
         n = levels.shape[2]
         nodes = planar_nodes(n + self._closed, levels.shape[1])
         nodes[:n] = levels.T
         return nodes
 
     def close(self, nodes: Floats) -> None:
-        """Repeat the first line of a closed grid at the end, in place."""
+        """Copy the first line of a closed grid to its last line, in place."""
         if self._closed:
             nodes[-1] = nodes[0]
 
     def heights(self, first: float) -> Floats:
-        """Return the heights (ni,) of first cells, `first` at the wall."""
+        """Return the first-cell heights (ni,): `first` at the wall, and more along a wake."""
         if self.widening is None:
             return np.full(len(self._south), first)
         return first * self.widening
@@ -104,10 +104,9 @@ class Front:
 
 
 def opening(behind: Floats, higher: Floats) -> Floats:
-    """Return the factors (n,) by which first cells along a wake are higher than at the wall.
+    """Return by which factors (n,) first cells along a wake are higher than at the wall.
 
-    `behind` (n,) are distances behind the trailing edge, in chords. `higher` (n,) is a further increase
-    (`rise`), also relative to the height at the wall.
+    `behind` (n,) are distances behind the trailing edge, in chords. `higher` (n,) is added to the factors.
     """
     return np.asarray(1.0 + _OPENING * behind**2 / (behind + _NEAR) + higher)
 
@@ -126,12 +125,12 @@ def _middle(wall: Floats) -> Floats:
 def distance_to_march(
     front: Front, first: float, cells: int, settings: MarchSettings, constant: int, edge: Edge | None
 ) -> float:
-    """Return the sum of steps by which a march from the body reaches the far field.
+    """Return the sum of the steps of a march whose last level reaches the far field.
 
-    Around a circle of n nodes a step s leads from radius r to r + s (1 - e)/(1 + f s/r + 2 e s/r). Here f is
-    the weight of the flux along a level, and e = 2π ε q/n + b h/r the dissipation, with ε and b of the
-    settings, the height h of the level, and the reduction q where lines diverge. Constants fitted on airfoils
-    correct this for other bodies.
+    Around a circle of n nodes, a step s leads from the radius r to r + s (1 - e)/(1 + f s/r + 2 e s/r). Here
+    f is the weight of the flux along a level and e = 2π ε q/n + b h/r the dissipation. ε and b are
+    coefficients of `settings`, h is the height of the level, q a reduction where lines diverge. For other
+    bodies, corrections fitted on airfoils are applied.
     """
     distance = front.outer - front.inner
     around = 2.0 * math.pi * settings.dissipation / len(front.start())

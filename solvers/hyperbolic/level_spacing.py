@@ -29,9 +29,9 @@ class Edge(NamedTuple):
 
 
 def sharpest_edge(ring: Floats) -> Edge | None:
-    """Return the sharpest convex corner of a closed, clockwise wall (n, 2) among those of 60 degrees or more.
+    """Return the sharpest convex corner, of at least 60 degrees, of a closed, clockwise wall (n, 2), or None.
 
-    The first node is not repeated.
+    The first node is not repeated at the end.
     """
     turn = -turning(ring, closed=True)
     k = int(np.argmax(turn))
@@ -42,19 +42,19 @@ def sharpest_edge(ring: Floats) -> Edge | None:
 
 
 def fastest(nodes: Floats) -> Floats:
-    """Return the log (nj - 2,) of the largest growth at inner levels of `nodes` (ni, nj, 2)."""
+    """Return the logarithm (nj - 2,) of the greatest growth at each inner level of `nodes` (ni, nj, 2)."""
     heights = norms(np.diff(nodes, axis=1))
     return np.asarray(log(heights[:, 1:] / heights[:, :-1]).max(axis=0))
 
 
 def even_shares(nodes: Floats, steps: Floats, rate: float, constant: int) -> Floats:
-    """Return the weights (n,) for `level_steps` with which cells grow equally fast at each level.
+    """Return weights (n,) for `level_steps` with which the greatest growth is the same at all levels.
 
     Parameters
     ----------
-    nodes, steps : a marched grid (ni, nj, 2), and its steps (n,).
+    nodes, steps : a marched grid (ni, nj, 2), and its n steps.
     rate : logarithm of the largest permitted growth ratio.
-    constant : number of equal first steps.
+    constant : number of equal steps at the wall.
     """
     grown = np.diff(log(steps))
     shares = np.maximum(grown + rate - fastest(nodes), 0.0)
@@ -65,13 +65,13 @@ def even_shares(nodes: Floats, steps: Floats, rate: float, constant: int) -> Flo
 def level_steps(
     first: float, distance: float, cells: int, constant: int, edge: Edge | None, shares: Floats | None = None
 ) -> Floats:
-    """Return step lengths (cells,) that start with `first` and add up to `distance`.
+    """Return step lengths (cells,) that begin with `first` and add up to `distance`.
 
     Parameters
     ----------
-    constant : number of equal first steps; the others grow by one ratio.
-    edge : sharp edge; growth is reduced where lines diverge from it. Constants are fitted on airfoils.
-    shares : (cells,) weights of the logarithms of growth ratios.
+    constant : number of equal steps at the wall; the others grow by one ratio.
+    edge : sharp edge; where lines diverge from it, steps grow less (constants are fitted on airfoils).
+    shares : (cells,) weights of the logarithms of the growth ratios.
 
     >>> level_steps(1.0, 9.0, 5, 3, None).tolist()
     [1.0, 1.0, 1.0, 2.0, 4.0]

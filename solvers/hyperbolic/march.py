@@ -54,7 +54,7 @@ AREA_SMOOTHING = 0.16  # coefficient of a smoothing step of the areas along a le
 
 @dataclass(frozen=True)
 class MarchLayers:
-    """Rows of cells that a march makes."""
+    """Requirements for the rows of cells of a march."""
 
     first: float  # first-cell height, in the unit of the boundary
     growth: float | None  # largest growth ratio; None: not limited
@@ -68,21 +68,21 @@ def hyperbolic(
     boundary: Boundary, *, wall_spacing: float, growth: float | None = None, free_rows: bool = False,
     constant: int = 1, multiple: int = 1,
 ) -> Solution:  # fmt: skip
-    """Return an O or C grid marched from the wall of `boundary`, whose wall nodes are kept bitwise.
+    """Return an O or C grid marched from the wall of `boundary`; the wall nodes are bitwise kept.
 
-    The far field of the solution is where the march ended. The ends of C rows move along the sides west and
-    east, which are assumed to be straight. If all attempts have folded cells, so has the grid.
+    The solution has its own far field, where the march ended. The ends of C rows move along the sides west
+    and east, which are assumed to be straight. If cells fold in all attempts, the returned grid is folded.
 
     Parameters
     ----------
-    boundary : its far field determines the distance, its `nj` the number of rows.
+    boundary : its far field gives the distance of the march, its `nj` the number of rows.
     wall_spacing : first-cell height in chords, met to 1e-8.
     growth : largest growth ratio.
     free_rows : whether the number of rows follows from `growth`, as a multiple of `multiple`.
     constant : number of rows with the first-cell height.
 
-    Raises InputError: a four-sided boundary; spacing or growth out of range; too few rows. Raises
-    SolverError: no attempt gave finite nodes.
+    Raises InputError if the boundary is four-sided, spacing or growth is out of range, or rows are too few.
+    Raises SolverError if no attempt gives finite nodes.
     """
     check_layers(wall_spacing, growth)
     if boundary.topology == "quad":
@@ -99,9 +99,9 @@ def hyperbolic(
 
 
 def marched(front: Front, rows: int, layers: MarchLayers) -> Floats:
-    """Return the nodes (ni, nj, 2) of a march with `rows` rows of cells, or as many as `layers` need.
+    """Return the nodes (ni, nj, 2) of a march with `rows` rows of cells, or as many as `layers` require.
 
-    Raises InputError: too few rows. Raises SolverError: no attempt gave finite nodes.
+    Raises InputError if rows are too few, and SolverError if no attempt gives finite nodes.
     """
     growth, multiple = layers.growth, layers.multiple
     least = cells = _rows(rows, front.outer - front.inner, layers)
@@ -144,7 +144,7 @@ def _unfolded(front: Front, cells: int, layers: MarchLayers) -> Floats:
 
 
 def check_layers(wall_spacing: float, growth: float | None = None) -> None:
-    """Raise InputError unless `wall_spacing` (chords) and `growth` are values that `hyperbolic` takes."""
+    """Raise InputError if `wall_spacing` (in chords) or `growth` is out of the range of `hyperbolic`."""
     if not 1e-9 <= wall_spacing <= 0.1:
         problem = f"a first cell of {wall_spacing:g} chords"
         raise InputError(problem, "use 1e-9 to 0.1", parameter="first_cell")

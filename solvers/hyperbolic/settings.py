@@ -9,7 +9,7 @@ RISING = 0.75  # part of the levels over which the dissipation rises
 
 @dataclass(frozen=True)
 class MarchSettings:
-    """Parameters of the smoothing of levels."""
+    """Parameters of the smoothing in a march."""
 
     dissipation: float  # coefficient of the smoothing along a level
     # the flux along the new level weighs 1 + theta; 0 is Euler's implicit rule, more is more robust
@@ -45,10 +45,10 @@ OPEN_ATTEMPTS = (
 
 
 def attempts_around_base(ratio: float, *, concave: bool) -> tuple[MarchSettings, ...]:
-    """Return the settings for C grids around a blunt base; rows grow by `ratio`.
+    """Return the settings to be tried in turn for C grids around a blunt base; rows grow by `ratio`.
 
-    Lines from the corners of a base start one first-cell height apart. The faster rows grow, the more these
-    lines must be spread. Lines from `concave` corners converge, and need more smoothing.
+    Lines from both sides of a corner of the base start one first-cell height apart. The faster rows grow, the
+    more the lines must spread. Lines from `concave` corners converge and need more smoothing.
     """
     even = max(0.05, 0.5 * (ratio - 1.0) - 0.05)
     first = replace(OPEN_ATTEMPTS[0], even=even)

@@ -20,7 +20,7 @@ TURNING_DEG = 25.0  # largest angle in degrees by which a wall turns along a cel
 
 @dataclass(frozen=True, eq=False)
 class Chords:
-    """The distinct edges of a layout's blocks, and its chords: sets of opposite edges with one cell count."""
+    """Edges of the blocks of a layout, and chords: sets of opposite edges, with the same cell count each."""
 
     layout: Layout
     edges: tuple[Indices, ...]
@@ -34,7 +34,7 @@ class Chords:
 
     @classmethod
     def of(cls, layout: Layout, images: Sequence[Indices] = ()) -> "Chords":
-        """Return the edges and chords of a layout; an edge and its mirror image belong to the same chord."""
+        """Return the edges and chords of a layout; an edge and its mirror image are in the same chord."""
         edges: list[Indices] = []
         numbers: dict[tuple[int, ...], int] = {}
         sides = np.empty((len(layout.blocks), 4), dtype=np.intp)
@@ -61,22 +61,22 @@ class Chords:
         return cls(layout, tuple(edges), sides, turned, wall, partner, chord, count, images)
 
     def of_refined(self, layout: Layout) -> "Chords":
-        """Return the chords of `layout`, which has the same blocks with other numbers of cells."""
+        """Return the chords of `layout`, which has the same blocks but other numbers of cells."""
         return replace(Chords.of(layout), chord=self.chord, count=self.count)
 
     @cached_property
     def counts(self) -> Indices:
-        """(chords,) numbers of cells along the edges of each chord in the layout."""
+        """Number of cells (chords,) along the edges of each chord."""
         cells = np.empty(self.count, dtype=np.intp)
         cells[self.chord] = [len(edge) - 1 for edge in self.edges]
         return cells
 
     @cached_property
     def multiple(self) -> Indices:
-        """(chords,) divisors that the counts of a symmetric layout must have, to be symmetric when refined.
+        """Divisor (chords,) of the cell count of each chord with which a symmetric layout stays symmetric.
 
-        The divisor of a chord around a ring is the number of mirrors. If a chord has a wall edge with a
-        corner in the middle, which a mirror contains, it is 2, else 1.
+        If a chord goes around a ring, it is the number of mirrors. If a mirror contains a corner in the
+        middle of a wall edge of the chord, it is 2. Otherwise it is 1.
         """
         multiple = np.ones(self.count, dtype=np.intp)
         for k, edge in enumerate(self.edges):
@@ -91,7 +91,7 @@ class Chords:
 
     @cached_property
     def lengths(self) -> Floats:
-        """(e,) lengths of the edges, as polygons through their nodes."""
+        """Lengths (e,) of the edges, as polygons through their nodes."""
         nodes = self.layout.mesh.nodes
         return np.array([np.hypot(*np.diff(nodes[edge], axis=0).T).sum() for edge in self.edges])
 
@@ -117,7 +117,7 @@ class Chords:
 
     @cached_property
     def least(self) -> Indices:
-        """(chords,) smallest numbers of cells: `LEAST`, or more because of corners and turns of walls."""
+        """Smallest number of cells (chords,): `LEAST`, or more if walls have corners or turn."""
         least = np.full(self.count, LEAST, dtype=np.intp)
         for edge, loop, arcs in self._walls():
             ends = np.sort(arcs[[0, -1]])
@@ -128,12 +128,12 @@ class Chords:
         return least
 
     def cells(self, counts: Indices) -> int:
-        """Return the total number of cells for these `counts` (chords,)."""
+        """Return the number of all cells, if the chords have `counts` (chords,)."""
         along = counts[self.chord[self.sides]]
         return int((along[:, 0] * along[:, 2]).sum())
 
     def along_loops(self, counts: Indices) -> Indices:
-        """Return the numbers of cells (loops,) along the walls of each loop, for `counts` (chords,)."""
+        """Return the number of wall cells (loops,) of each boundary loop, for `counts` (chords,)."""
         mesh = self.layout.mesh
         along = np.zeros(len(mesh.domain.loops), dtype=np.intp)
         for edge in np.flatnonzero(self.wall):
@@ -141,7 +141,7 @@ class Chords:
         return along
 
     def cut_off(self) -> Floats:
-        """Return the area (e,) between wall and straight cell sides along each edge; 0 off walls."""
+        """Return the area (e,) between the wall and straight sides of cells at each edge; 0 inside."""
         lost = np.zeros(len(self.edges))
         part = np.linspace(0.0, 1.0, 5)
         for edge, loop, arcs in self._walls():
@@ -152,27 +152,27 @@ class Chords:
         return lost
 
     def bend(self, edge: int) -> float:
-        """Return the largest angle in radians by which the wall turns along one cell of a wall edge."""
+        """Return the greatest angle in radians by which the wall turns along a cell of a wall edge."""
         arcs = np.sort(self.arcs(edge))
         loop = self.layout.mesh.domain.loops[self.layout.mesh.places.loop[self.edges[edge][0]]]
         return float(np.radians(turning_between(loop, arcs[:-1], arcs[1:]).max()))
 
     def counts_for_size(self, size: float, least: Indices | None = None) -> Indices:
-        """Return counts (chords,) for a cell size: the geometric mean of length / size over a chord's edges.
+        """Return counts (chords,) for cells of the given size, at least `least`, by default the property.
 
-        Counts are at least `least` (chords,), by default the property `least`.
+        The count of a chord is the rounded geometric mean of length / size over its edges.
         """
         wanted = log(np.maximum(self.lengths / size, 1e-9))
         mean = np.bincount(self.chord, wanted, self.count) / np.bincount(self.chord, minlength=self.count)
         return self.rounded(exp(mean), self.least if least is None else least)
 
     def rounded(self, wanted: Floats, least: Indices) -> Indices:
-        """Return integer counts (chords,) nearest to `wanted` (chords,), and at least `least` (chords,)."""
+        """Return permitted counts (chords,) near `wanted` (chords,), and at least `least` (chords,)."""
         times = self.multiple
         return times * np.maximum(-(-least // times), nearest_whole(wanted / times).astype(np.intp))
 
     def counts_for_cells(self, cells: int, least: Indices | None = None) -> Indices:
-        """Return counts (chords,) for about `cells` cells in total, or for as few cells as possible."""
+        """Return counts (chords,), at least `least`, for about `cells` cells in total."""
         size = np.sqrt(self.layout.mesh.domain.area / cells)
         best = self.counts_for_size(size, least)
         for _ in range(12):

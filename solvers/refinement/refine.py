@@ -28,18 +28,18 @@ _FINER = 8  # points a cell, between which nodes at given places lie on straight
 def refine(
     layout: Layout, counts: Indices, chords: Chords | None = None, places: Sequence[Floats] | None = None
 ) -> Layout:
-    """Return the layout with `counts` (chords,) of cells along the edges of each of its `Chords`.
+    """Return the layout with `counts` (chords,) cells along the edges of each of its `chords`.
 
     `places` has, for each edge, the positions (cells + 1,) of the new nodes as fractional indices of old
-    nodes; by default at equal steps. If a corner of the domain lies inside an edge, the nearest new node is
-    moved to the corner. Layers are not preserved.
+    nodes; None: equal steps. If a corner of the domain is inside an edge, the nearest new node moves there.
+    Layers are not preserved.
     """
     chords = chords or Chords.of(layout)
     return _Refined(chords, counts, places).layout
 
 
 def multiplied(layout: Layout, times: int) -> Layout:
-    """Return the layout with `times` as many cells in each direction; the old nodes are bitwise kept."""
+    """Return the layout with `times` as many cells along each direction; its nodes are bitwise kept."""
     chords = Chords.of(layout)
     return refine(layout, chords.counts * times, chords)
 
@@ -47,7 +47,7 @@ def multiplied(layout: Layout, times: int) -> Layout:
 def refined(grid: Grid, times: int) -> Grid:
     """Return `grid` with each cell divided into `times` x `times` cells; its nodes are kept.
 
-    Raises InputError: a connection that covers only a part of a side; as `layout_of`.
+    Raises InputError as `layout_of`, and if a connection covers only a part of a side.
     """
     for each in grid.connections:
         if not joins_whole_sides(grid, each):

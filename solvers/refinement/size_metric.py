@@ -18,14 +18,14 @@ SWEEPS = 20  # number of sweeps that smooth the target lengths
 
 @dataclass(frozen=True, eq=False)
 class Near:
-    """Nearest points of each part of a metric to edges."""
+    """For each part of a size metric, the points nearest to edges."""
 
     point: Indices  # (p, m) nearest point to each of m edges, for each of p parts
     distance: Floats  # (p, m) distance to this point
     square: Floats  # (p, m) squared cosine of the angle between the edge and the normal at this point
 
     def length(self, sizes: "SizeMetric") -> Floats:
-        """Return the target lengths (m,) of the edges for `sizes`: the least that any part requires."""
+        """Return the target lengths (m,) of the edges: the least that any part of `sizes` requires."""
         rise = sizes.grading * self.distance
         high = np.minimum(sizes.across[self.point] + rise, sizes.largest)
         wide = np.minimum(sizes.along[self.point] + rise, sizes.largest)
@@ -35,10 +35,10 @@ class Near:
 
 @dataclass(frozen=True, eq=False)
 class SizeMetric:
-    """Target lengths of edges by place and direction.
+    """Target lengths of edges, which depend on place and direction.
 
-    The lengths across and along a wall are the half axes of an ellipse; in any direction, the target length
-    is the ellipse's radius.
+    The target lengths across and along a wall are the half axes of an ellipse. In any other direction, the
+    target length is the radius of the ellipse.
     """
 
     points: Floats  # (n, 2) points on walls and fronts
@@ -51,7 +51,7 @@ class SizeMetric:
 
     @classmethod
     def joined(cls, metrics: "Sequence[SizeMetric]") -> "SizeMetric":
-        """Return the metric of all requirements in `metrics`."""
+        """Return the metric that requires what any of `metrics` requires."""
         starts = np.cumsum([0, *(len(each.points) for each in metrics[:-1])])
         points, normals, across, along = (
             np.concatenate([getattr(each, name) for each in metrics])
@@ -61,11 +61,11 @@ class SizeMetric:
         return cls(points, normals, across, along, largest, metrics[0].grading, tuple(starts.tolist()))
 
     def length(self, places: Floats, directions: Floats) -> Floats:
-        """Return the target lengths (m,) of edges at `places` (m, 2) with `directions` (m, 2)."""
+        """Return the target lengths (m,) of edges with midpoints `places` (m, 2) and `directions` (m, 2)."""
         return self.near(places, directions).length(self)
 
     def near(self, places: Floats, directions: Floats) -> Near:
-        """Return that part of the computation of `length` which does not depend on the sizes.
+        """Return the part of the computation of `length` that does not depend on target lengths.
 
         `places` (m, 2) are the midpoints of edges, `directions` (m, 2) their directions.
         """
@@ -82,14 +82,14 @@ class SizeMetric:
         return Near(point, away, square)
 
     def edges(self, mesh: QuadMesh) -> Floats:
-        """Return the target lengths (e,) of the edges of a mesh at their present positions."""
+        """Return the target lengths (e,) of the edges of a mesh in their present positions."""
         first, second = mesh.nodes[mesh.edges].transpose(1, 0, 2)
         return self.length(0.5 * (first + second), second - first)
 
     def gradual(self, mesh: QuadMesh, sweeps: int = SWEEPS) -> Floats:
-        """Return the target lengths (e,) of the edges of a mesh, smoothed from edge to edge.
+        """Return the target lengths (e,) of the edges of a mesh, smoothed over neighbouring edges.
 
-        Without smoothing, lengths would jump on the centre lines between walls.
+        Without this, they would jump halfway between walls.
         """
         return _evened(self.edges(mesh), mesh, sweeps)
 

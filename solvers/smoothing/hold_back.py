@@ -21,7 +21,7 @@ _NOTHING = 1.0, 0.05, 0.1
 
 @dataclass(frozen=True)
 class PlaneMeasures:
-    """Measures of a planar grid that must not become larger, and a `score`, where smaller is better."""
+    """Quality measures of a planar grid that must not become larger, and a `score`: smaller is better."""
 
     folded: int
     angle: float  # largest non-orthogonality of a face in degrees
@@ -30,7 +30,7 @@ class PlaneMeasures:
     score: float
 
     def no_worse(self, than: Self) -> bool:
-        """Return whether no measure is larger."""
+        """Return whether no measure is larger than that of `than`, apart from negligible differences."""
         if than.folded or self.folded:
             return self.folded < than.folded
         pairs = (self.angle, than.angle), (self.skew, than.skew), (self.mean, than.mean)
@@ -39,7 +39,7 @@ class PlaneMeasures:
 
 
 def measures(grid: Grid) -> PlaneMeasures:
-    """Return the measures of a planar multi-block grid."""
+    """Return the quality measures of a planar multi-block grid."""
     of_faces, figures = faces(grid), block_figures(grid)
     angle = of_faces.non_orthogonality.max if of_faces.non_orthogonality else 0.0
     skew = of_faces.face_skewness.max if of_faces.face_skewness else 0.0
@@ -60,9 +60,9 @@ _SMALL = 0.02  # fraction of the displacement below which a node is reset
 
 
 def held_back(grid: Grid, original: Layout, layout: Layout, before: PlaneMeasures) -> Grid | None:
-    """Return `grid` of the layout `original`, moved towards `layout` where no measure becomes worse.
+    """Return `grid`, moved from `original` towards `layout` as far as no measure becomes worse.
 
-    `before` are the measures of `grid`. Return None if hardly any node would move.
+    `original` is the layout of `grid`, `before` its measures. Returns None if hardly any node would move.
     """
     part = np.ones(len(original.mesh.nodes))
     for number in range(_ROUNDS):
@@ -86,7 +86,7 @@ def held_back(grid: Grid, original: Layout, layout: Layout, before: PlaneMeasure
 
 
 def part_of_the_way(original: Layout, layout: Layout, part: Floats) -> Layout:
-    """Return the layout with nodes at the fraction `part` (n,) between two layouts; boundary nodes slide."""
+    """Return the layout in which node k is at the fraction ``part[k]`` of its way; boundary nodes slide."""
     old, mesh = original.mesh, layout.mesh
     nodes = old.nodes + part[:, None] * (mesh.nodes - old.nodes)
     arc = old.places.arc.copy()

@@ -15,10 +15,10 @@ _SAME = 1e-6  # largest difference of unit normals of the same plane
 
 
 def slides_of(grid: Grid, mesh: HexMesh) -> tuple[Slides, Bools]:
-    """Return the planes or lines in which outer nodes slide, and the mask (n,) of these nodes.
+    """Return the planes or lines in which outer nodes slide, and a mask (n,) of these nodes.
 
-    Nodes are fixed on patches that are not flat, on borders between different patches in one plane, and where
-    three planes meet.
+    A node is fixed on a patch that is not flat, between different patches in the same plane, and where three
+    planes meet.
     """
     fixed = mesh.outer.copy()
     known = np.zeros(len(mesh.nodes), dtype=bool)

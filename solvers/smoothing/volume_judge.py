@@ -17,33 +17,33 @@ _GOOD, _PART = 0.7, 0.98
 
 @dataclass(frozen=True)
 class VolumeMeasures:
-    """Folded cells, and the measures that must not become worse."""
+    """Quality measures of a volume grid that must not become worse."""
 
     folded: int
     mean: float  # mean over all cells of the deviation of their angles from 90 degrees
     least: float  # smallest scaled Jacobian of a corner
 
     def no_worse(self, than: Self) -> bool:
-        """Return whether no measure is worse."""
+        """Return whether no measure is worse than that of `than`, apart from negligible differences."""
         if than.folded or self.folded:
             return self.folded < than.folded
         return self.mean <= max(than.mean + _SLACK, _NOTHING) and self.least >= than.bound
 
     @property
     def bound(self) -> float:
-        """Smallest scaled Jacobian of another mesh that is no worse."""
+        """Smallest scaled Jacobian that another mesh may have and be no worse."""
         return min(_PART * self.least, _GOOD)
 
 
 def measures(mesh: HexMesh) -> VolumeMeasures:
-    """Return the measures of a mesh."""
+    """Return the quality measures of a mesh."""
     quality = measure_volumes(_grid(mesh))
     metrics = quality.metrics
     return VolumeMeasures(quality.folded, metrics["deviation"].mean, metrics["scaled_jacobian"].min)
 
 
 def cells_below(mesh: HexMesh, bound: float) -> list[Bools]:
-    """Return for each cell of each block whether its scaled Jacobian is below `bound`; 0: it is folded."""
+    """Return for each block a mask of cells with a scaled Jacobian below `bound`; 0: of folded cells."""
     scaled = solid_metric(_grid(mesh), "scaled_jacobian")
     return [least < bound if bound > 0 else least <= 0.0 for least in scaled]
 

@@ -20,7 +20,7 @@ _ROOM = 0.9  # largest fraction of a line, up to its last interior node, that la
 
 @dataclass(frozen=True, eq=False)
 class VolumeLayers:
-    """Lines from outer sides into the volume."""
+    """Lines from an outer side into the volume, with their layers of thin cells."""
 
     lines: Indices  # (m, n) node indices; the first node is on the side
     rows: Indices  # (m,) number of thin cells of each line
@@ -28,7 +28,7 @@ class VolumeLayers:
 
 
 def layers_of(mesh: HexMesh, moves: Bools, targets: Targets) -> list[VolumeLayers]:
-    """Return the layers of thin cells at outer sides of a mesh; `moves` (n,) is the mask of free nodes."""
+    """Return the layers of thin cells at outer sides of a mesh; the mask `moves` (n,) marks free nodes."""
     layers = []
     for number, (block, wanted) in enumerate(zip(mesh.blocks, targets, strict=True)):
         for side, (axis, end) in PLACES.items():
@@ -95,7 +95,7 @@ def _of_one_foot(layers: list[VolumeLayers], count: int) -> list[VolumeLayers]:
 
 
 def with_layers(nodes: Floats, layers: list[VolumeLayers]) -> tuple[Floats, Bools]:
-    """Return `nodes` (n, 3) with layers at their target heights, and a mask (n,) of nodes in layers."""
+    """Return `nodes` (n, 3) with layers at their target heights, and a mask (n,) of the nodes in layers."""
     moved, held = nodes.copy(), np.zeros(len(nodes), dtype=bool)
     for each in layers:
         points = nodes[each.lines]
@@ -122,7 +122,7 @@ def _at(points: Floats, place: Floats, wanted: Floats) -> Floats:
 
 
 def with_first_heights(nodes: Floats, first: Indices, heights: Floats) -> Floats:
-    """Return `nodes` (n, 3) with edges `first` (m, 2) of lengths `heights` (m,); second nodes move."""
+    """Return `nodes` (n, 3), in which the edges `first` (m, 2) have lengths `heights`; second nodes move."""
     foot = nodes[first[:, 0]]
     way = nodes[first[:, 1]] - foot
     moved = nodes.copy()

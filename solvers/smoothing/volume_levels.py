@@ -23,7 +23,7 @@ FEWER = 0.6  # largest fraction of nodes in a useful copy
 
 @dataclass(frozen=True, eq=False)
 class CoarserCopy:
-    """A copy of a mesh with fewer nodes."""
+    """Copy of a mesh with fewer nodes."""
 
     mesh: HexMesh
     nodes: Indices  # (m,) for each node of the copy, its index in the finer mesh
@@ -31,7 +31,7 @@ class CoarserCopy:
 
 
 def coarser(mesh: HexMesh) -> CoarserCopy | None:
-    """Return a copy of a mesh with about half of the nodes along each direction; None if it has few nodes."""
+    """Return a copy of a mesh with about half of the nodes along each direction; None for a small mesh."""
     kept = tuple(tuple(_halved(sorted(cuts)) for cuts in block) for block in _cuts(mesh))
     lattices = [block[np.ix_(*each)] for block, each in zip(mesh.blocks, kept, strict=True)]
     if len(mesh.nodes) <= SMALL or sum(each.size for each in lattices) > 0.6 * sum(

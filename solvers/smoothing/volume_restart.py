@@ -12,10 +12,9 @@ _MOST, _SMALL = 500, 1e-8  # largest number of iterations, and the relative resi
 
 
 def harmonic(mesh: HexMesh, moves: Bools) -> Floats:
-    """Return the nodes (n, 3) of a mesh; those of the mask `moves` (n,) are means of neighbouring nodes.
+    """Return the nodes (n, 3) of a mesh; those of the mask `moves` (n,) go to the mean of their neighbours.
 
-    The coordinates of moved nodes satisfy Laplace's equation on the graph of edges; all other nodes stay
-    where they are.
+    Their coordinates thus satisfy Laplace's equation on the graph of edges. All other nodes stay.
     """
     edges = _edges(mesh)
     start = mesh.nodes.copy()

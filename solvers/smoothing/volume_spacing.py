@@ -19,7 +19,7 @@ _CLIPPED = 4  # number of steps in which this limit applies
 
 
 def wanted_edges(mesh: HexMesh, moves: Bools, rounds: int = ROUNDS) -> Targets:
-    """Return the logarithms of target lengths of a mesh's edges; `moves` (n,) is the mask of free nodes."""
+    """Return the logarithms of target lengths of a mesh's edges; the mask `moves` (n,) marks free nodes."""
     logs: list[BlockTargets] = [
         tuple(_logs(mesh.nodes[block], axis) for axis in range(3))  # type: ignore[misc]
         for block in mesh.blocks

@@ -38,10 +38,10 @@ _AS_GOOD = "the grid is kept as it was: its optimum is no better"
 def smooth_volumes(grid: Grid, *, iterations: int = ITERATIONS, slide: bool = False) -> Solution:
     """Return `grid` with its nodes moved to the variational optimum of all blocks.
 
-    Nodes of outer and periodic sides are bitwise unchanged, except that with `slide` the nodes of flat
-    patches move in their planes. `iterations` is the largest number of iterations. Displacements are reduced
-    where the smallest scaled Jacobian or the mean deviation from 90 degrees would become worse. Raises
-    InputError: the blocks are not volumes, or are left-handed.
+    Nodes of outer and periodic sides are bitwise unchanged; with `slide`, nodes of flat patches move in their
+    planes. `iterations` is the largest number of iterations. Displacements are reduced where the smallest
+    scaled Jacobian or the mean deviation from 90 degrees would become worse. Raises InputError if blocks are
+    not volumes or are left-handed.
     """
     original = hex_mesh_of(grid)
     before = measures(original)

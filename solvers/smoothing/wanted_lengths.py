@@ -18,11 +18,11 @@ _SHARE = 0.17
 
 
 def wanted_lengths(mesh: QuadMesh, most: float, *, slide: bool) -> Floats:
-    """Return target lengths (e,) of `mesh.edges`; neighbours differ by a factor of at most about `most`.
+    """Return target lengths (e,) of `mesh.edges`; the ratio of neighbours is at most about `most`.
 
-    Where a ratio exceeds `most`, its logarithm is diffused along and across grid lines. Edges across thin
-    first cells at the boundary, and edges along a boundary whose nodes do not `slide`, keep their lengths.
-    Only ratios of neighbouring lengths matter.
+    If a ratio exceeds `most`, its logarithm is diffused along and across grid lines. Edges across thin first
+    cells keep their lengths, and so do edges along a boundary whose nodes do not `slide`. Only ratios of
+    neighbouring lengths matter.
     """
     own = log(mesh.edge_lengths)
     cap, stays = math.log(most), thin_heights(mesh)
@@ -44,7 +44,7 @@ def wanted_lengths(mesh: QuadMesh, most: float, *, slide: bool) -> Floats:
 
 
 def thin_heights(mesh: QuadMesh) -> Bools:
-    """Return a mask (e,) of the edges that lead from the boundary along the short side of a `THIN` cell."""
+    """Return a mask (e,) of edges from the boundary that are the short side of a thin cell (see `THIN`)."""
     cell, side = np.nonzero(mesh.on_wall[mesh.edge_of])
     ratio = mesh.aspects(mesh.edge_lengths)[cell]
     thin = np.where(side % 2 == 0, ratio < 1.0 / THIN, ratio > THIN)

@@ -20,7 +20,8 @@ Ranges = list[tuple[int, int]]  # first and end index of nodes along each direct
 def check_corners(faces: SixFaces) -> None:
     """Raise InputError, with the node, if `faces` fold a cell wherever the inner nodes are.
 
-    At an edge of the volume, two faces alone determine the corners of cells.
+    At an edge of the volume, two faces alone determine corners of cells. Elsewhere, the faces next to an
+    inner node may leave no valid position for it (`closed_place`).
     """
     check_hand(faces)
     worst = []
@@ -96,10 +97,10 @@ def _index(faces: SixFaces, side: Side, second: Side, at: int) -> list[int]:
 
 
 def closed_place(faces: SixFaces) -> Place | None:
-    """Return indices i, j, k of an inner node that has no valid position, or None.
+    """Return the indices i, j, k of an inner node for which there is no valid position; None without any.
 
-    Each face next to a node restricts it to four half-spaces. All of these must have a common point
-    (kernels/volumes/near_faces.c).
+    Each face next to a node restricts it to four half-spaces. There is a valid position if all of these have
+    a common point (kernels/volumes/near_faces.c).
     """
     for sides, ranges in next_to_faces(faces.counts):
         walls = tuple((np.ascontiguousarray(getattr(faces, side)), *PLACES[side]) for side in sides)
@@ -113,7 +114,7 @@ def closed_place(faces: SixFaces) -> Place | None:
 
 
 def next_to_faces(counts: tuple[int, int, int]) -> Iterator[tuple[tuple[Side, ...], Ranges]]:
-    """Yield sets of three, two or one sides, and the inner nodes next to all of them."""
+    """Yield each set of three, two or one sides, and the ranges of the inner nodes next to all of them."""
     for size in (3, 2, 1) if min(counts) > 2 else ():
         for sides in combinations(FACES, size):
             if len({PLACES[side][0] for side in sides}) == size:

@@ -18,9 +18,9 @@ SAME = 1e-9  # largest difference of laws that count as equal
 
 
 def uniform_laws(counts: tuple[int, int, int]) -> Laws:
-    """Return laws with equal steps along directions with `counts` nodes.
+    """Return laws (parameters along edges) with equal steps; `counts` are the node counts.
 
-    The laws of a direction are (4, n) parameters from 0 to 1, for the edges at the (low, low), (high, low),
+    The laws of a direction are parameters (4, n) from 0 to 1, for its edges at the (low, low), (high, low),
     (low, high) and (high, high) ends of the other two directions.
     """
     xi, eta, zeta = (np.tile(np.linspace(0.0, 1.0, n), (4, 1)) for n in counts)
@@ -28,13 +28,13 @@ def uniform_laws(counts: tuple[int, int, int]) -> Laws:
 
 
 def arc_laws(faces: SixFaces) -> Laws:
-    """Return the relative arc lengths of the edges. Raises InputError: an edge without length."""
+    """Return laws that are relative arc lengths of the edges. Raises InputError: an edge without length."""
     xi, eta, zeta = (_arcs(faces.edges_along(axis)) for axis in range(3))
     return xi, eta, zeta
 
 
 def mean_laws(laws: Laws) -> Laws:
-    """Return laws in which the four edges of a direction all have their mean parameters."""
+    """Return laws in which all four edges of a direction have the mean of their parameters."""
     xi, eta, zeta = (np.tile(law.mean(axis=0), (4, 1)) for law in laws)
     return xi, eta, zeta
 
@@ -55,7 +55,7 @@ def _arcs(edges: list[Floats]) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Spline:
-    """A tensor product of cubic B-splines, evaluated at the nodes of a volume."""
+    """Tensor product of cubic B-splines, evaluated at the nodes of a volume."""
 
     coefficients: Floats  # (3, m1, m2, m3)
     first: tuple[NDArray[np.intp], ...]  # by direction, (n,) index of the first of four coefficients
@@ -65,11 +65,11 @@ class Spline:
 def interpolate(
     faces: SixFaces, laws: Laws, spline: Spline | None = None, out: Floats | None = None
 ) -> Floats:
-    """Return nodes (ni, nj, nk, 3) by interpolation along three directions, plus a `spline`.
+    """Return nodes (ni, nj, nk, 3) by transfinite interpolation between `faces`; a `spline` is added.
 
-    `laws` are the parameters of nodes along edges (see `uniform_laws`). Nodes are stored in `out` (3, ni, nj,
-    nk) if given, since allocation costs as much as the computation. Gordon and Hall, Int. J. Numer. Methods
-    Eng. 7 (1973) 461-477.
+    `laws` are the parameters of nodes along edges (see `uniform_laws`). The result is stored in `out` (3, ni,
+    nj, nk) if given, since allocation takes as long as the computation. Gordon and Hall, Int. J. Numer.
+    Methods Eng. 7 (1973) 461-477.
     """
     planes = np.empty((3, *faces.counts)) if out is None else out
     sides = tuple(np.moveaxis(face, -1, 0) for face in faces.faces)

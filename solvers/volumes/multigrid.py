@@ -24,9 +24,9 @@ SWEEPS, FIRST = 12, 30  # on the coarsest level: in a cycle, and to start with
 
 @dataclass(frozen=True, eq=False)
 class Transfer:
-    """Transfer along one direction between a level and the next coarser one.
+    """Operators along one direction between a level and the next coarser one.
 
-    Each operator has, for each result, the index of the first node that contributes, and the weights.
+    For each result, an operator has the index of the first node that contributes, and the weights.
     """
 
     up: tuple[NDArray[np.intp], Floats]  # (n, 2) linear interpolation to the fine nodes
@@ -35,7 +35,7 @@ class Transfer:
 
 
 class Level:
-    """Nodes of a level, and the transfer to the next coarser level along each direction."""
+    """A multigrid level, and the transfer to the next coarser level along each direction."""
 
     def __init__(self, faces: SixFaces, *, coarse: bool) -> None:
         self.faces = faces
@@ -48,18 +48,18 @@ class Level:
         self.transfers: list[Transfer | None] = []
 
     def smooth(self, x: Floats, sweeps: int, forced: bool, factor: float) -> None:
-        """Relax x (3, ni, nj, nk) in place."""
+        """Relax x (3, ni, nj, nk) in place; the right-hand side is 0 unless `forced`."""
         for _ in range(sweeps):
             winslow_smooth(x, self.right if forced else None, factor, self.threads, self.room)
 
     def norm(self, x: Floats, forced: bool) -> float:
-        """Return the norm of the residual at x (3, ni, nj, nk); the field `residual` gets the residual."""
+        """Store the residual of x (3, ni, nj, nk) in the attribute `residual`, and return its norm."""
         right = self.right if forced else None
         return float(np.sqrt(winslow_residual(x, right, self.residual, self.threads, self.room)))
 
 
 class VolumeMultigrid:
-    """Multigrid cycles inside `faces`, with `sweeps` relaxations before and after transfers."""
+    """Multigrid cycles inside `faces`, with `sweeps` relaxations before and after each coarse correction."""
 
     def __init__(self, faces: SixFaces, sweeps: int = 1, factor: float = 1.0) -> None:
         self.levels = [Level(faces, coarse=False)]
@@ -72,10 +72,10 @@ class VolumeMultigrid:
             self.levels.append(Level(level.faces.resampled(counts), coarse=True))
 
     def nested(self) -> tuple[Floats, float, float]:
-        """Return x (3, ni, nj, nk) after a cycle on each level from the coarsest on, and two numbers.
+        """Return x (3, ni, nj, nk) after a cycle on each level, from coarse to fine, and two numbers.
 
-        The first number is the largest difference of a coordinate between the two finest levels, about three
-        times the discretisation error. The second is the largest change of a coordinate in the last cycle.
+        The first number is the greatest difference of a coordinate between the two finest levels, about three
+        times the discretisation error. The second is the greatest change of a coordinate in the last cycle.
         """
         last = len(self.levels) - 1
         x = self.levels[last].start.copy()
@@ -93,10 +93,10 @@ class VolumeMultigrid:
         return x, apart, change
 
     def cycle(self, x: Floats) -> tuple[float, float]:
-        """Do one V cycle on `x` (3, ni, nj, nk), in place.
+        """Run a V-cycle on `x` (3, ni, nj, nk), in place.
 
-        Returns the norm of the residual before the cycle, and the largest change of a coordinate, seen at
-        every third node.
+        Returns the norm of the residual before the cycle, and the greatest change of a coordinate, measured
+        at every third node.
         """
         some = x[:, ::SOME, ::SOME, ::SOME]
         before = some.copy()
@@ -155,7 +155,7 @@ class VolumeMultigrid:
 
 
 def transfer(n: int, m: int) -> Transfer:
-    """Return the transfer between n and m < n equally spaced nodes."""
+    """Return the transfer between n equally spaced nodes and m < n of them."""
     at = np.arange(n) * ((m - 1) / (n - 1))
     first = np.minimum(at.astype(np.intp), m - 2)
     weights = np.stack([1.0 - (at - first), at - first], axis=1)

@@ -12,10 +12,10 @@ from meshonet.solvers.energy.hexes import HexProblem, Slides, descent_of
 
 
 class PlanesDescent(HexProblem):
-    """Minimisation over the inner nodes of planes (3, ni, nj, nk), in place.
+    """Minimisation over the inner nodes of a volume `planes` (3, ni, nj, nk), in place.
 
-    The target length of edges in a direction is the mean step along the volume's edges. With `cubes` it is
-    the same in all directions.
+    The target length of the edges of a direction is the mean step along the volume's edges of this direction.
+    With `cubes`, all directions have the same target length.
     """
 
     def __init__(self, planes: Floats, cubes: bool = False) -> None:
@@ -35,14 +35,14 @@ class PlanesDescent(HexProblem):
         self.descent = descent_of(self.nodes, tables, sizes, self.mesh.cells, slides, over)
 
     def run(self, weights: HexWeights, most: int, epsilon: float = 0.0) -> tuple[float, float]:
-        """Do at most `most` iterations; see `HexProblem.run`."""
+        """Run at most `most` iterations; see `HexProblem.run`."""
         smallest_and_value = super().run(weights, most, epsilon)
         self.planes[...] = self.nodes.T.reshape(self.planes.shape)
         return smallest_and_value
 
 
 def inverse_lengths(planes: Floats) -> tuple[float, float, float]:
-    """Return, for each direction of `planes` (3, ni, nj, nk), 1 / mean step along the volume's edges."""
+    """Return, for each direction of `planes` (3, ni, nj, nk), 1 / mean step along the edges of the volume."""
     lengths = []
     for axis in range(3):
         rows = np.moveaxis(planes, axis + 1, -1)

@@ -16,9 +16,10 @@ from meshonet.solvers.volumes.interpolate import Laws, Spline, interpolate, unif
 
 
 def refine_volume(coarse: Floats, coarse_faces: SixFaces, faces: SixFaces, laws: Laws) -> Floats:
-    """Return nodes (3, ni, nj, nk) inside `faces` at `laws`, whose four rows per direction are equal.
+    """Return nodes (3, ni, nj, nk) inside `faces` at `laws`, by splines through coarse nodes.
 
-    `coarse` (3, mi, mj, mk) are nodes inside `coarse_faces`, at equal steps of the parameters.
+    `coarse` (3, mi, mj, mk) are nodes inside `coarse_faces` at equal steps. All four rows of a law must be
+    equal.
     """
     start = interpolate(coarse_faces, uniform_laws(coarse_faces.counts))
     spline = spline_of(coarse - np.moveaxis(start, -1, 0), tuple(law[0] for law in laws))
@@ -26,7 +27,7 @@ def refine_volume(coarse: Floats, coarse_faces: SixFaces, faces: SixFaces, laws:
 
 
 def spline_of(values: Floats, places: tuple[Floats, ...]) -> Spline:
-    """Return the spline through `values` (3, mi, mj, mk) on uniform knots, at `places`."""
+    """Return the spline through `values` (3, mi, mj, mk) at uniform knots, to be evaluated at `places`."""
     coefficients = values
     for axis in range(3):
         matrix = coefficient_matrix(values.shape[axis + 1])

@@ -19,7 +19,7 @@ ENOUGH = 0.02  # smallest Jacobian above which a window gets the complete functi
 
 
 def repair(planes: Floats) -> int:
-    """Untangle cells of planes (3, ni, nj, nk) in place; return how many stay folded."""
+    """Untangle folded cells of a volume `planes` (3, ni, nj, nk) in place; return how many stay folded."""
     nodes = np.moveaxis(planes, 0, -1)
     bad = folded_cells(nodes)
     if min(planes.shape[1:]) < 3:
@@ -34,7 +34,7 @@ def repair(planes: Floats) -> int:
 
 
 def open_flat_cells(planes: Floats) -> None:
-    """Open flat cells of planes (3, ni, nj, nk), in place."""
+    """Move nodes of a volume `planes` (3, ni, nj, nk) in place, so that nearly flat cells become thicker."""
     nodes = np.moveaxis(planes, 0, -1)
     (scaled,) = solid_metric(Grid.from_nodes(nodes), "scaled_jacobian")
     for window in windows(np.argwhere(scaled < NEARLY), MARGINS[0], nodes.shape[:3], False, LARGEST_CELLS):

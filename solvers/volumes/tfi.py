@@ -14,10 +14,9 @@ from meshonet.solvers.volumes.interpolate import arc_laws, interpolate, uniform_
 def tfi(faces: SixFaces, *, blending: Blending = "arclength") -> Solution:
     """Return the grid of a volume by transfinite interpolation between its six faces.
 
-    Parameters of nodes are interpolated relative arc lengths of the edges (``arclength``), or index / number
-    of cells (``linear``). Cells may fold where faces are bent.
-
-    Raises InputError: an edge without length; an unknown `blending`; a left-handed volume.
+    The parameters of nodes are interpolated from the edges: relative arc lengths (``arclength``) or relative
+    indices (``linear``). Cells may fold where faces are bent. Raises InputError if an edge has no length, the
+    blending is unknown, or the volume is left-handed.
     """
     if blending not in get_args(Blending):
         remedy = "use " + "/".join(get_args(Blending))

@@ -39,16 +39,16 @@ def variational(
 ) -> Solution:
     """Minimise a functional of `meshonet.solvers.energy.hex_functional` over the nodes inside `faces`.
 
-    Splines give all nodes from a coarse optimum; cells that fold there are repaired in windows.
+    A coarse optimum is interpolated to all nodes by splines. If cells fold, they are repaired.
 
     Parameters
     ----------
     max_cycles : largest number of iterations on the finest level that is solved.
-    coarse : most nodes per direction of the finest level; "auto": 33; None: all nodes of the faces.
-    energy : ``angles``, for right angles and gradual changes of lengths, or ``shape``, for cells like cubes.
+    coarse : largest number of nodes per direction on this level; "auto": 33; None: all nodes of the faces.
+    energy : ``angles``, for right angles and gradual changes of length, or ``shape``, for cells like cubes.
 
-    Raises InputError: the faces fold cells wherever inner nodes are (the error names the node); an edge has
-    no length; a setting is not positive.
+    Raises InputError if the faces fold cells wherever inner nodes are (the error names the node), if an edge
+    has no length, or if a setting is not positive.
     """
     begun = time.perf_counter()
     _check(max_cycles, coarse, energy)
@@ -79,9 +79,9 @@ def variational(
 def optimum(
     faces: SixFaces, most: int | None = None, weights: HexWeights = OPTIMAL
 ) -> tuple[Floats, int]:  # fmt: skip
-    """Return optimal nodes (3, ni, nj, nk) inside evenly spaced `faces`, and the finest level's iterations.
+    """Return optimal nodes (3, ni, nj, nk) inside `faces`, and the number of iterations on the finest level.
 
-    Coarser copies are solved first. A grid that cannot be untangled is returned folded.
+    The faces must have evenly spaced nodes. If the grid cannot be untangled, it is returned folded.
     """
     levels = [faces]
     while max(levels[-1].counts) > COARSEST:

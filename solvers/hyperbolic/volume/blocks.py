@@ -17,12 +17,12 @@ SYMMETRY, FREE = "symmetry", "free"
 
 
 def blocks_of(surface: Surface, lines: Floats) -> tuple[Block, ...]:
-    """Return a block for each patch of a surface with lines (3, n, levels) from its n nodes."""
+    """Return a block for each patch of a surface; `lines` (3, n, levels) leave its n nodes."""
     return tuple(Block(np.moveaxis(lines[:, lattice], 0, -1)) for lattice in surface.lattices)
 
 
 def volume_grid(surface: Surface, blocks: tuple[Block, ...], in_plane: Indices) -> Grid:
-    """Return the grid of `blocks`; mask `in_plane` (k,) marks open edges in planes of symmetry."""
+    """Return the grid of `blocks`; the mask `in_plane` (k,) marks open edges in planes of symmetry."""
     top = blocks[0].counts[2] - 1
     sides = [
         (b, side, face_of(lattice, side)) for b, lattice in enumerate(surface.lattices) for side in _SIDES

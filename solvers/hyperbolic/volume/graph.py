@@ -18,7 +18,7 @@ _WIDTH, _FALL = 4, 0.35  # rings of nodes around irregular ones that are smoothe
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """A neighbour of a node, real or ghost, at the position own * x(node) + sign * x(base) + shift."""
+    """A neighbour, real or ghost, of a node: its position is own * x(node) + sign * x(base) + shift."""
 
     base: int
     own: float = 0.0
@@ -27,25 +27,25 @@ class Seen:
 
     @property
     def real(self) -> bool:
-        """Whether it is a node of the surface."""
+        """Whether the neighbour is a node of the surface, not a ghost."""
         return self.own == 0.0 and bool((self.sign == 1.0).all())
 
     def mirrored(self, plane: Plane) -> "Seen":
-        """Return its mirror image in a plane."""
+        """Return the mirror image of the neighbour in a plane."""
         turned = np.where(np.arange(3) == plane.axis, -1.0, 1.0)
         return Seen(
             self.base, self.own, turned * self.sign, turned * self.shift + (1.0 - turned) * plane.value
         )
 
     def opposite(self, splay: float) -> "Seen":
-        """Return the ghost node on the opposite side, 1 + `splay` times as far from the node."""
+        """Return the ghost on the other side of the node, 1 + `splay` times as far away as the neighbour."""
         far = 1.0 + splay
         return Seen(self.base, 1.0 + far, -far * self.sign, -far * self.shift)
 
 
 @dataclass(frozen=True, eq=False)
 class MarchGraph:
-    """Arrays of ``kernels/surfaces/graph.h``; `order` (n,) are the surface nodes in the arrays' order."""
+    """The arrays of ``kernels/surfaces/graph.h``; `order` (n,) has the surface node at each of their rows."""
 
     order: Indices
     red: int
@@ -71,9 +71,9 @@ def march_graph(
 
     Parameters
     ----------
-    planes, in_plane : planes of symmetry, and mask (p, k) of the open edges in each.
+    planes, in_plane : planes of symmetry, and for each a mask (p, k) of the open edges in it.
     hollow : (n,) distances from concave edges (`meshonet.geometry.surface.hollows`).
-    splay : by which fraction ghosts (nodes beyond free edges) are farther than nodes (`Seen.opposite`).
+    splay : excess distance of ghosts, beyond free edges, relative to that of nodes (`Seen.opposite`).
     boost : additional smoothing at irregular nodes.
     """
     n = len(surface.nodes)

@@ -18,7 +18,7 @@ _TOGETHER = 1 << 11  # lines at a time: little memory beside their own
 
 
 def growth_of_levels(lines: Floats) -> Floats:
-    """Return the largest growth (m - 1,) at inner levels of `lines` (3, n, m + 1)."""
+    """Return the greatest growth ratio (m - 1,) at each inner level of `lines` (3, n, m + 1)."""
     largest = np.ones(lines.shape[2] - 2)
     for k in range(0, lines.shape[1], _TOGETHER):
         steps = norms(np.moveaxis(np.diff(lines[:, k : k + _TOGETHER], axis=2), 0, -1))
@@ -28,11 +28,11 @@ def growth_of_levels(lines: Floats) -> Floats:
 
 
 def slower_steps(steps: Floats, last_growth: Floats, growth: float) -> Floats:
-    """Return `steps` (m,) of the last march, changed to grow less where cells grew too much.
+    """Return the `steps` (m,) of a march, changed so that cells that grew too much grow less.
 
-    `last_growth` (m - 1,) is the largest ratio of neighbouring cells at each inner level of that march,
-    `growth` the limit. The logarithm of this ratio is assumed to be that of the ratio of steps times a
-    factor, which depends on the distance from the wall.
+    `last_growth` (m - 1,) is the greatest growth ratio of cells at each inner level of that march, `growth`
+    the limit. The logarithm of this ratio is assumed to be that of the ratio of the steps, multiplied by a
+    factor that depends on the distance from the wall.
     """
     length, most = float(steps.sum()), math.log(growth)
     ratio = np.maximum(log(steps[1:] / steps[:-1]), _LEAST * most)
@@ -60,9 +60,10 @@ def slower_steps(steps: Floats, last_growth: Floats, growth: float) -> Floats:
 
 
 def limit_growth(lines: Floats, growth: float) -> None:
-    """Move nodes of `lines` (3, n, levels) along the lines, in place; first cells and last nodes stay.
+    """Move nodes along `lines` (3, n, levels), in place, so that cells grow by at most `growth`.
 
-    Lines within the limit `growth` do not change. On lines too long for the limit, cells grow by one ratio.
+    First cells, last nodes and lines within the limit do not change. On a line too long for it, cells grow
+    evenly.
     """
     if math.isinf(growth):
         return

@@ -57,20 +57,20 @@ class _Volume(NamedTuple):
 def march_surface(
     surface: Surface, settings: VolumeMarch, *, wing: bool = False, remedy: str = ""
 ) -> Solution:
-    """Return the volume between a surface and a far field, with one block per patch.
+    """Return the volume grid between a surface and a far field, with one block for each patch.
 
     Blocks have i and j of their patches; k goes from the wall (``bottom``) to the far field (``top``). Sides
-    in planes of symmetry are patches ``symmetry``, sides from free edges ``free``; the others are connected.
-
-    Chan and Steger, Appl. Math. Comput. 51 (1992) 181; ``kernels/surfaces/step.c`` lists the differences.
+    in planes of symmetry are patches ``symmetry``, sides at free edges ``free``; all other sides are
+    connected. Chan and Steger, Appl. Math. Comput. 51 (1992) 181; ``kernels/surfaces/step.c`` lists the
+    differences.
 
     Parameters
     ----------
-    wing : whether other smoothing is also tried if cells are valid, but poor.
-    remedy : remedy for folded cells, in place of the usual one.
+    wing : whether to try other smoothing also if cells are valid, but poor.
+    remedy : remedy in the error for folded cells, in place of the usual one.
 
-    Raises InputError: impossible settings; grids of two parts would overlap. Raises NoValidGridError, with
-    the worst cells: in every attempt a corner Jacobian or a Bezier coefficient of a Jacobian is not positive.
+    Raises InputError if settings are impossible or grids of two parts would overlap. Raises NoValidGridError,
+    with the worst cells, if in every attempt a corner Jacobian or a Bezier coefficient is not positive.
     """
     steps, far = settings.steps(surface.size), settings.distance(surface.size)
     _check_parts(surface, far)
@@ -167,7 +167,7 @@ def _with_growth(
 def march_levels(
     surface: Surface, graph: MarchGraph, nodes: Floats, steps: Floats, smoothing: Smoothing
 ) -> Floats:
-    """Return the levels (made + 1, 3, n) of a march by `steps` (m,) until it fails."""
+    """Return the levels (made + 1, 3, n) that a march by `steps` (m,) makes until it ends or fails."""
     levels = np.empty((len(steps) + 1, 3, len(nodes)))
     levels[0] = nodes[graph.order].T
     numbers = smoothing.numbers(0.5 * surface.size)

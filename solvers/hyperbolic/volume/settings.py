@@ -18,7 +18,7 @@ FEWEST = 3  # layers of nodes: two cells
 
 @dataclass(frozen=True)
 class VolumeMarch:
-    """A march from a surface; lengths are in the surface's unit."""
+    """Settings of a march from a surface; lengths are in its unit."""
 
     first_cell: float  # height of the cells at the wall
     layers: int | None = None  # nodes along each line, with the wall node; None: as `growth` requires
@@ -42,7 +42,7 @@ class VolumeMarch:
 
     @property
     def limit(self) -> float:
-        """Largest growth ratio; infinite if it follows from `layers`."""
+        """Largest growth ratio; infinite if growth follows from `layers`."""
         return math.inf if self.layers is not None and self.growth is None else self.growth or GROWTH
 
     def distance(self, size: float) -> float:
@@ -52,7 +52,7 @@ class VolumeMarch:
     def steps(self, size: float) -> Floats:
         """Return the steps (layers - 1,) of a march from a surface of extent `size`.
 
-        Raises InputError: too few layers for this growth ratio, or for any.
+        Raises InputError if layers are too few for the growth ratio, or reach beyond the far field.
         """
         far = self.distance(size)
         if far < 2.0 * self.first_cell:
@@ -73,9 +73,9 @@ class VolumeMarch:
 
 
 class Smoothing(NamedTuple):
-    """The parameters of ``kernels/surfaces/march.h`` except `size`, and two of `march_graph`.
+    """Parameters in ``kernels/surfaces/march.h``, except `size`, and two parameters of `march_graph`.
 
-    `outer` is the ratio of explicit smoothing far away to that near the wall. With ratios up to 6, levels
+    `outer` is the explicit smoothing far away, divided by that near the wall. With values up to 6, levels
     around a sphere stay spheres; 16 makes better cells behind swept wings.
     """
 
@@ -100,7 +100,7 @@ class Smoothing(NamedTuple):
     boost: float = 3.0  # additional smoothing at irregular nodes, as a fraction of the smoothing elsewhere
 
     def numbers(self, size: float) -> tuple[float, ...]:
-        """Return the parameters for the kernels; `size` is half the extent of the surface."""
+        """Return the parameters as the kernels take them; `size` is half the extent of the surface."""
         return (*self[:5], size, *self[5:16])
 
 
@@ -129,5 +129,5 @@ CONCAVE_ATTEMPTS = (
 
 
 def attempts_for(*, concave: bool, wing: bool) -> tuple[Smoothing, ...]:
-    """Return the parameters tried in turn, on surfaces with `concave` edges or of a `wing`."""
+    """Return the parameters to be tried in turn on a surface, which has `concave` edges or is a `wing`."""
     return CONCAVE_ATTEMPTS if concave else WING_ATTEMPTS if wing else ATTEMPTS

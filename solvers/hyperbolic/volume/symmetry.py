@@ -18,7 +18,7 @@ _FACING = 0.1  # largest net area that faces a plane of symmetry, as a fraction 
 
 
 class Symmetry(NamedTuple):
-    """Planes of symmetry, mask `inside` (p, k) of the open edges in each, and notes."""
+    """Planes of symmetry, for each a mask `inside` (p, k) of the open edges in it, and notes."""
 
     planes: tuple[Plane, ...]
     inside: Indices
@@ -26,12 +26,11 @@ class Symmetry(NamedTuple):
 
 
 def symmetry_of(surface: Surface, axis: str | None, far: float) -> Symmetry:
-    """Return the planes of symmetry of a surface that is marched to a distance `far`.
+    """Return the planes of symmetry of a surface that is marched to the distance `far`.
 
-    `axis` is the normal of the planes; ``none`` for no plane, None to detect planes. A detected plane is left
-    out if most walls face it.
-
-    Raises InputError: no open edge is in a plane normal to `axis`; walls that face the plane are too close.
+    `axis` is the normal of the planes, ``none`` for no plane, or None to detect planes. A detected plane is
+    left out if walls that face it are nearer than `far`. Raises InputError if no open edge is in a plane
+    normal to `axis`, or if walls that face this plane are nearer than `far`.
     """
     planes, inside = symmetry_planes(surface, axis)
     kept, notes = [], []
@@ -52,7 +51,10 @@ def symmetry_of(surface: Surface, axis: str | None, far: float) -> Symmetry:
 
 
 def closes_in(surface: Surface, plane: Plane) -> float:
-    """Return the mean distance of the walls that face a plane; infinite unless most walls face it."""
+    """Return the mean distance of the walls that face a plane.
+
+    It is infinite if the net area that faces the plane is at most a tenth of the surface.
+    """
     a, b, c, d = (surface.nodes[surface.quads[:, k]] for k in range(4))
     area = 0.5 * np.cross(c - a, d - b)
     away = (0.25 * (a + b + c + d))[:, plane.axis] - plane.value
@@ -64,9 +66,9 @@ def closes_in(surface: Surface, plane: Plane) -> float:
 
 
 def symmetry_planes(surface: Surface, axis: str | None) -> tuple[tuple[Plane, ...], Indices]:
-    """Return the planes normal to an axis that contain open edges, and a mask (p, k) of these edges.
+    """Return the planes normal to `axis` that contain open edges, and for each a mask (p, k) of these edges.
 
-    `axis`: see `symmetry_of`. Raises InputError: no open edge is in a plane normal to the axis.
+    For `axis` see `symmetry_of`. Raises InputError if no open edge is in a plane normal to it.
     """
     sides, nodes = surface.open_sides, surface.nodes
     if axis in (None, "none"):
@@ -98,7 +100,7 @@ def _named(nodes: Floats, sides: Indices, axis: int, slack: float) -> tuple[Plan
 
 
 def in_planes(surface: Surface, planes: tuple[Plane, ...], inside: Indices) -> Floats:
-    """Return the nodes (n, 3) of a surface, with edges `inside` (p, k) moved exactly into `planes`."""
+    """Return the nodes (n, 3) of a surface, in which the edges `inside` (p, k) are exactly in `planes`."""
     nodes, edges = surface.nodes.copy(), surface.open_edges
     for plane, flags in zip(planes, inside, strict=True):
         nodes[edges[flags], plane.axis] = plane.value
@@ -106,7 +108,7 @@ def in_planes(surface: Surface, planes: tuple[Plane, ...], inside: Indices) -> F
 
 
 def free_edges_note(surface: Surface, inside: Indices) -> str:
-    """Return a note on open edges in no plane of symmetry; empty if there are none."""
+    """Return a note on open edges that are in no plane of symmetry; empty if there are none."""
     edges = surface.open_edges
     free = ~inside.any(axis=0) if len(inside) else np.ones(len(edges), dtype=bool)
     if not free.any():
@@ -119,7 +121,7 @@ def free_edges_note(surface: Surface, inside: Indices) -> str:
 
 
 def planes_note(planes: tuple[Plane, ...], named: str | None) -> str:
-    """Return a note on detected planes of symmetry; empty if they were named."""
+    """Return a note on the planes of symmetry; empty if the user `named` them."""
     if not planes or named is not None:
         return ""
     return "open edges are in a plane of symmetry at " + " and ".join(str(plane) for plane in planes)
