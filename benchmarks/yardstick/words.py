@@ -25,7 +25,6 @@ There are {count} shapes of each kind, drawn with seed {seed}. All boundary node
 In the tables, the first six kinds are *four-sided*, the last three *body*.
 
 - `infer --model NAME`: a [network shipped with meshonet](models.md).
-
 - *grids*: number of shapes for which the program makes a grid.
 - *folded*: number of grids with folded cells and, in brackets, number of folded cells.
 - *largest angle*: largest cell corner angle of a grid, mean / maximum over the grids.
