@@ -26,7 +26,7 @@ class LayoutFiles(Files):
     output: Annotated[str, o.option_of(o.IO)(
         "-o", "--output", metavar="LAYOUT.json", help="File to write, or - for standard output. For several "
         "inputs: a pattern such as 'dir/{stem}.json', with {stem} for the name of the input file, {name} for "
-        "that of the shape, or {index}.",
+        "that of the shape, or {index} (from 0).",
     )]
     from_format: o.From = None
     skip_existing: o.SkipExisting = False

@@ -28,7 +28,7 @@ class PictureFiles(Files):
     output: Annotated[str, _output(
         "-o", "--output", metavar="PICTURE", help="Picture (.png, .svg or .pdf) or interactive page (.html) "
         "to write, or - for standard output. For several inputs: a pattern such as 'dir/{stem}.png', with "
-        "{stem} for the name of the input file, {name} for that of the shape, or {index}.",
+        "{stem} for the name of the input file, {name} for that of the shape, or {index} (from 0).",
     )]
     to_format: str | None = _output(
         metavar="FORMAT", help="Format of the picture: png, svg, pdf or html. [default: from the extension; "

@@ -31,7 +31,7 @@ Grids = Annotated[list[str], typer.Argument(
 Output = Annotated[str, _option(
     "-o", "--output", metavar="FILE", help="File to write, or - for standard output. For several inputs: one "
     ".h5 file, or a pattern such as 'dir/{stem}.vts', with {stem} for the name of the input file, {name} for "
-    "that of the shape, or {index}.",
+    "that of the shape, or {index} (from 0).",
 )]
 From = Annotated[str | None, _option(
     metavar="FORMAT", help="Format of the input; meshonet convert --list-formats lists all. [default: from "
