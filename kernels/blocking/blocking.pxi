@@ -12,7 +12,7 @@ cdef extern from "blocking/surface.h":
 
 
 cdef Surface surface_of(tuple arrays, ptrdiff_t vertices) except *:
-    """Point to the arrays (t, 3): vertices, neighbours, and the edge's number in these."""
+    """Return pointers into arrays (t, 3): vertices of triangles, neighbours, and the edge's number in each neighbour."""
     vertex, neighbour, across = arrays
     cdef Surface s
     cdef tuple shape = (len(vertex), 3)
@@ -27,7 +27,7 @@ cdef Surface surface_of(tuple arrays, ptrdiff_t vertices) except *:
 
 
 def surface_fans(tuple surface, ptrdiff_t vertices):
-    """Return the start (vertices + 1,) of each vertex's corners in a list of all (3 t,), that list, and its used length."""
+    """Return where the corners of each vertex start (vertices + 1,) in a list (3 t,), the list, and its used length."""
     cdef Surface s = surface_of(surface, vertices)
     start, fan = np.empty(vertices + 1, np.intp), np.empty(3 * s.triangles, np.intp)
     cdef ptrdiff_t *begins = fills_indices(start, (vertices + 1,))
@@ -36,7 +36,7 @@ def surface_fans(tuple surface, ptrdiff_t vertices):
 
 
 def surface_comb(tuple surface, ptrdiff_t vertices, quarters):
-    """Return quarter-turns (t,) that make the frames agree over a spanning tree, and the inner edges (t, 3) outside it."""
+    """Return quarter-turns (t,) with which frames agree along a spanning tree, and a mask (t, 3) of inner edges off it."""
     cdef Surface s = surface_of(surface, vertices)
     turn, cut = np.empty(s.triangles, np.intp), np.empty((s.triangles, 3), np.uint8)
     cdef unsigned char *cuts = <unsigned char *>numbers(cut, b"B", 1, (s.triangles, 3), True)
@@ -50,7 +50,7 @@ def surface_comb(tuple surface, ptrdiff_t vertices, quarters):
 
 
 def surface_prune(tuple surface, start, fan, keep, cut):
-    """Remove from `cut` (t, 3), in place, edges that dead-end at a vertex not to `keep` (vertices,); both are uint8."""
+    """Remove from the mask `cut` (t, 3), in place, edges with a free end at a vertex outside the mask `keep`."""
     cdef Surface s = surface_of(surface, len(keep))
     cdef unsigned char *cuts = <unsigned char *>numbers(cut, b"B", 1, (s.triangles, 3), True)
     cdef const unsigned char *kept = <const unsigned char *>numbers(keep, b"B", 1, (s.vertices,), False)

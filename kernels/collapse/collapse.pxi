@@ -18,8 +18,8 @@ cdef extern from "collapse/topology.h":
 
 
 def connect_quads(quads, ptrdiff_t n):
-    """Return the edge and the twin (m, 4) of each half-edge of quads over n nodes, the end nodes (e, 2) of each edge, and
-    whether the mesh is manifold; see ``collapse/topology.h``."""
+    """Return edge and twin (m, 4) of each half-edge of quads of n nodes, the end nodes (e, 2) of the edges, and whether
+    the mesh is manifold; see ``collapse/topology.h``."""
     cdef HalfEdges mesh
     cdef ptrdiff_t m = len(quads)
     edge, twin, ends = np.empty((m, 4), np.intp), np.empty((m, 4), np.intp), np.empty((4 * m, 2), np.intp)
@@ -33,7 +33,7 @@ def connect_quads(quads, ptrdiff_t n):
 
 
 def joined_classes(pairs, ptrdiff_t n):
-    """Return the class (n,) of each of n numbers that `pairs` (k, 2) join, numbered by first appearance, and their count."""
+    """Return the class (n,) of each of n numbers, where `pairs` (k, 2) are in one class, and the number of classes."""
     cdef ptrdiff_t k = len(pairs), count
     label, parent = np.empty(n, np.intp), np.empty(n, np.intp)
     cdef const ptrdiff_t *joined = reads_places(pairs, (k, 2), n)
@@ -47,9 +47,9 @@ def joined_classes(pairs, ptrdiff_t n):
 def split_quads(quads, edge, twin, irregular, marked):
     """Return the node arrays of the blocks, the chord (e,) of each edge and the number of chords.
 
-    None if some block is not four-sided. `edge` and `twin` are those of `quads`. Block boundaries start at nodes where
-    `irregular` (n,) is set and at edges where `marked` (e,) is; the edges of all block boundaries are added to
-    `marked`.
+    None is returned if a block is not four-sided. `edge` and `twin` are those of `quads`. Block boundaries start at
+    nodes where `irregular` (n,) is set and at edges where `marked` (e,) is; the edges of all block boundaries are added
+    to `marked`.
     """
     cdef HalfEdges mesh
     cdef ptrdiff_t m = len(quads), count, written = -1, chords = 0, n = len(irregular), edges = len(marked)

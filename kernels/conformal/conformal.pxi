@@ -61,7 +61,7 @@ cdef Cplx *fills_complex(array) except NULL:
 
 
 cdef int lift_of(maps, BodyLift *lift) except -1:
-    """Fill in the maps of a `geometry.lift.Lift`."""
+    """Copy the maps of a `geometry.conformal.lift.Lift` to `lift`."""
     cdef int k = 0
     if len(maps.corners) > 2:
         raise ValueError("more than two corners")
@@ -114,7 +114,7 @@ def lift_to_strip(maps, z):
 
 
 def lift_follow(wall, centre, quarter):
-    """Return zeta (n,) along a wall (n,), as `geometry.conformal.lift.follow`."""
+    """Return zeta (n,) along a wall (n,); see `geometry.conformal.lift.follow`."""
     cdef ptrdiff_t n = len(wall)
     zeta = np.empty(n, complex)
     if n < 2:
@@ -136,7 +136,7 @@ def lift_bisect(maps, corner, ahead, behind, w, double start, double limit):
 
 
 def fourier_columns(modes, gain, unit, columns):
-    """Add the values of Fourier sums to `columns`, zeroed by the caller; for the arguments see ``conformal/picard.h``."""
+    """Write values of Fourier sums to `columns`, which must be zero; for the arguments see ``conformal/picard.h``."""
     cdef ptrdiff_t count = columns.shape[0], width = columns.shape[2], m = modes.shape[0]
     cdef ptrdiff_t highest = modes.shape[1] // 2
     if width % LANES or m > width or count & (count - 1) or count < 2:
@@ -153,10 +153,10 @@ def fourier_columns(modes, gain, unit, columns):
 
 
 def picard_step(c, double height, matrices, eigenvalues, smooth):
-    """Take one Picard step on the `c` (2, 2 MODES + 1, LEVELS), real and imaginary parts; return the largest change.
+    """Take a Picard step of modes `c` (2, 2 MODES + 1, LEVELS), real and imaginary parts; return the largest change.
 
-    For `matrices` (4, LEVELS, LEVELS) and `eigenvalues` see ``conformal/picard.h``; `smooth` multiplies the update's
-    modes.
+    For `matrices` (4, LEVELS, LEVELS) and `eigenvalues` see ``conformal/picard.h``; the modes of the change
+    are multiplied by `smooth`.
     """
     cdef PicardMatrices m
     cdef double change

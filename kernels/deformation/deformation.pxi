@@ -13,7 +13,7 @@ cdef extern from "deformation/blend.h":
 
 
 cdef BlendSources blend_sources(places, areas, double near) except *:
-    """Return places (d, n) with areas (n,), without motions."""
+    """Return the sources at places (d, n) with areas (n,); their motions are not set."""
     cdef BlendSources sources
     sources.axes, sources.n, sources.near2 = places.shape[0], places.shape[1], near * near
     if sources.axes not in (2, 3):
@@ -25,7 +25,7 @@ cdef BlendSources blend_sources(places, areas, double near) except *:
 
 
 def blend_motions(places, areas, motions, double near, points, int threads, moved):
-    """Fill moved (d, m) with the mean at points (d, m) of affine motions (d + d², n) of places (d, n), near ones weighted."""
+    """Fill moved (d, m) with means, weighted by distance, of motions (d + d², n) of places (d, n) at points (d, m)."""
     cdef BlendSources sources = blend_sources(places, areas, near)
     cdef ptrdiff_t m = points.shape[1]
     sources.motion = reads(motions, (sources.axes * (sources.axes + 1), sources.n))
@@ -36,7 +36,7 @@ def blend_motions(places, areas, motions, double near, points, int threads, move
 
 
 def blend_transposed(places, areas, double near, points, pull, gathered):
-    """Fill gathered (6, n) with the transpose of `blend_motions`, in the plane, applied to pull (2, m) at points (2, m)."""
+    """Fill gathered (6, n) with the transpose of planar `blend_motions`, applied to pull (2, m) at points (2, m)."""
     cdef BlendSources sources = blend_sources(places, areas, near)
     cdef ptrdiff_t m = points.shape[1]
     cdef Read x = reads(points, (2, m)), force = reads(pull, (2, m))

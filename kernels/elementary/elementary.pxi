@@ -15,7 +15,7 @@ cdef ptrdiff_t SHORT = 1 << 12  # operations that are over sooner than another t
 
 
 cdef inline void *let_go(ptrdiff_t operations) noexcept:
-    """Let other threads run Python, unless that many operations are short; what follows is no Python until `take_back`."""
+    """Release the GIL until `take_back`, unless there are few `operations`; do not use Python meanwhile."""
     return PyEval_SaveThread() if operations > SHORT else NULL
 
 

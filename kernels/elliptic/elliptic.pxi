@@ -96,7 +96,7 @@ cdef class MultigridLevel:
                 multigrid_smooth(&self.level, forced)
 
     def residual(self, bint forced):
-        """Compute the residual at the nodes solved for; return the sum of its squares."""
+        """Compute the residual at the unknown nodes; return the sum of its squares."""
         cdef double total
         with nogil:
             total = multigrid_residual(&self.level, forced)

@@ -202,8 +202,8 @@ cdef class VariationalDescent:
         """Minimise from the planes z (2, ni, nj), in place; return (functional, smallest Jacobian, iterations).
 
         It stops if no node moves by more than `still` cells in three consecutive iterations, or after `most`
-        iterations. In the first no node moves by more than `reach` cells. `listener` is called with the iterations done,
-        the functional and the norm of its gradient, at the start and after each iteration.
+        iterations. In the first no node moves by more than `reach` cells. `listener` is called with the iterations
+        done, the functional and the norm of its gradient, at the start and after each iteration.
         """
         cdef int done = 0, state = GOES_ON
         self.state.z = fills(z, (2, self.state.ni, self.state.nj))

@@ -84,7 +84,7 @@ def measure_cells(x, y, bint periodic, ptrdiff_t wake, summary, where, ptrdiff_t
 
 
 def curve_locate(s, table, start, stop, ptrdiff_t pieces, bint closed, interval, place):
-    """Fill `interval` and `place` (m,), the parameter in it from 0 to 1, for arc lengths `s` (m,); ``geometry/curve.h``."""
+    """Fill `interval` and the parameter in it, `place` from 0 to 1, for arc lengths `s`, (m,) each; ``geometry/curve.h``."""
     cdef ArcLengths curve
     cdef ptrdiff_t m = len(s), count = len(table) - 1
     curve.table, curve.start, curve.stop = reads(table, (count + 1,)), reads(start, (count,)), reads(stop, (count,))
@@ -96,7 +96,7 @@ def curve_locate(s, table, start, stop, ptrdiff_t pieces, bint closed, interval,
 
 
 def curve_points(cubic, interval, place, end, points):
-    """Fill `points` (m, 2) from the cubics (4, n, 2) at parameters `place` (m,); at parameter 1, bitwise with `end` (2,)."""
+    """Fill `points` (m, 2) from cubics (4, n, 2) at parameters `place` (m,); the curve ends bitwise at `end` (2,)."""
     cdef ptrdiff_t n = cubic.shape[1], m = len(place)
     c_curve_points(reads(cubic, (4, n, 2)), n, reads_places(interval, (m,), n), reads(place, (m,)), m, reads(end, (2,)),
                    fills(points, (m, 2)))
@@ -151,7 +151,7 @@ cdef extern from "geometry/ahead.h":
 
 
 def nearest_ahead(walls, points, along, double cosine, double same, distances):
-    """Fill `distances` (m,) with those of `points` (m, 2) to the nearest of `walls` (n, 2) ahead; see ``ahead.h``."""
+    """Fill `distances` (m,) from `points` (m, 2) to the nearest of `walls` (n, 2) ahead of each; see ``ahead.h``."""
     cdef ptrdiff_t n = len(walls), m = len(points)
     cdef Read w = reads(walls, (n, 2)), p = reads(points, (m, 2)), t = reads(along, (m, 2))
     cdef Written to = fills(distances, (m,))

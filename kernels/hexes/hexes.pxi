@@ -150,7 +150,7 @@ cdef class HexDescent:
         return steps.value, steps.smallest, done
 
     def smallest(self):
-        """Return the smallest Jacobian where the nodes are."""
+        """Return the smallest Jacobian for the current nodes."""
         cdef double smallest
         with nogil:
             smallest = hex_descent_smallest(&self.state)

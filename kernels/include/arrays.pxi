@@ -7,8 +7,8 @@ ctypedef double *Written
 
 
 cdef void *numbers(array, char kind, ptrdiff_t size, shape, bint written) except NULL:
-    """Return the start of a contiguous array of this shape, whose numbers are of a kind (as the struct module says, i for
-    whole ones) and `size` bytes each. The caller keeps the array alive."""
+    """Return the address of a contiguous array of this shape. Its numbers must have this kind (a letter of the struct
+    module, i for all integers) and `size` bytes. The caller must keep the array alive."""
     cdef Py_buffer view
     cdef char given
     PyObject_GetBuffer(array, &view, PyBUF_C_CONTIGUOUS | PyBUF_FORMAT | (PyBUF_WRITABLE if written else 0))
@@ -25,12 +25,12 @@ cdef void *numbers(array, char kind, ptrdiff_t size, shape, bint written) except
 
 
 cdef Read reads(array, tuple shape) except NULL:
-    """Return the doubles of an array that is read."""
+    """Return the address of the doubles of an array that is read."""
     return <const double *>numbers(array, b"d", 8, shape, False)
 
 
 cdef Written fills(array, tuple shape) except NULL:
-    """Return the doubles of an array that is written."""
+    """Return the address of the doubles of an array that is written."""
     return <double *>numbers(array, b"d", 8, shape, True)
 
 
@@ -43,7 +43,7 @@ cdef const ptrdiff_t *reads_indices(array, tuple shape) except NULL:
 
 
 cdef const ptrdiff_t *reads_places(array, tuple shape, ptrdiff_t limit, ptrdiff_t least=0) except NULL:
-    """Return indices, all of them from `least` to `limit` - 1."""
+    """Return the address of indices, after a check that all are from `least` to `limit` - 1."""
     cdef const ptrdiff_t *index = reads_indices(array, shape)
     cdef ptrdiff_t k, n = array.size
     for k in range(n):
@@ -53,7 +53,7 @@ cdef const ptrdiff_t *reads_places(array, tuple shape, ptrdiff_t limit, ptrdiff_
 
 
 cdef const ptrdiff_t *reads_starts(array, ptrdiff_t count, ptrdiff_t end) except NULL:
-    """Return where `count` pieces of a list begin, and where the last ends, which is `end` at the most."""
+    """Return the address of the starts of `count` pieces of a list and the end of the last, which is at most `end`."""
     cdef const ptrdiff_t *start = reads_places(array, (count + 1,), end + 1)
     cdef ptrdiff_t k
     for k in range(count):
@@ -63,7 +63,7 @@ cdef const ptrdiff_t *reads_starts(array, ptrdiff_t count, ptrdiff_t end) except
 
 
 cdef Written fills_room(array, ptrdiff_t least) except NULL:
-    """Return the doubles of scratch of one direction, of which there are at least so many."""
+    """Return the address of a one-dimensional array of at least `least` doubles, used as scratch."""
     if len(array) < least:
         raise ValueError("too little scratch")
     return fills(array, array.shape)

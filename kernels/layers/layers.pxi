@@ -53,7 +53,7 @@ cdef Layers layers_of(ptrdiff_t cells, double first, double last, ptrdiff_t cons
 
 
 def layer_steps(steps, double length, double first, double last, ptrdiff_t constant):
-    """Fill `steps` (cells,) so that they add up to `length`; return their largest ratio, infinite if that is impossible."""
+    """Fill `steps` (cells,) so that their sum is `length`; return their largest ratio, infinite if this is impossible."""
     cdef ptrdiff_t cells = len(steps)
     cdef Layers layers = layers_of(cells, first, last, constant)
     cdef double log_ratio = 0.0
@@ -97,7 +97,7 @@ def redistribute(x, y, first, fade, int threads=1):
 
 
 def layer_law(wanted, slopes, double most, double steeper, cells):
-    """Fill `cells` (n, rows) with sizes over the first that add up to `wanted` (n,); the rest is as in ``law.h``."""
+    """Fill `cells` (n, rows) with sizes, relative to the first, of sum `wanted` (n,); for the others see ``law.h``."""
     cdef ptrdiff_t n, rows
     n, rows = cells.shape
     cdef Read sums = reads(wanted, (n,)), ends = reads(slopes, (n,))
@@ -122,10 +122,10 @@ def sampled_lines(lines, arcs, at, points):
 
 
 def even_line(tuple measures, bint closed, tuple terms, tuple steps, tuple pattern, slot, unknown, place):
-    """Move `place` (n,); return the row in which the equations are singular, or -1. The rest is as in ``even_line.h``.
+    """Move `place` (n,); return the row where the equations are singular, or -1. For the others see ``even_line.h``.
 
-    `measures` are (arcs (m,), values (k, m), slopes (k, m - 1)); `terms` (limits (k,), stiffness (unknowns,), pairs (p, 2),
-    factors (p, 2), rest (p,), change, linear, nearly); `steps` (limits (k,), weight, rise, most, steps, halvings).
+    `measures` are (arcs (m,), values (k, m), slopes (k, m - 1)); `terms` (limits (k,), stiffness (unknowns,), pairs (p,
+    2), factors (p, 2), rest (p,), change, linear, nearly); `steps` (limits (k,), weight, rise, most, steps, halvings).
     """
     cdef ptrdiff_t k, m, n = len(place), links = len(terms[2]), bad
     k, m = measures[1].shape

@@ -62,7 +62,7 @@ cdef const ptrdiff_t *starts_of(starts, ptrdiff_t nodes, ptrdiff_t ports, ptrdif
 
 
 def probe_rays(tuple tables, node, port, ptrdiff_t nodes, ptrdiff_t ports, double near, starts, ptrdiff_t limit):
-    """Return (r, 2) the node and port that each of r rays meets, or -1; for the arguments see ``motorcycle/trace.h``."""
+    """Return node and port (r, 2) that each of r rays meets, or -1; for the arguments see ``motorcycle/trace.h``."""
     cdef RayLines lines = lines_of(tables, node, port, nodes, ports, near)
     cdef const ptrdiff_t *rays = starts_of(starts, nodes, ports, lines.map.triangles)
     cdef ptrdiff_t count = len(starts)
@@ -77,7 +77,7 @@ def trace_rays(tuple tables, node, port, ptrdiff_t nodes, ptrdiff_t ports, doubl
                ptrdiff_t room):
     """Return the ends of rays, (r, 3) and (r, 2), and their pieces, (p, 3) and (p, 5); see ``motorcycle/trace.h``.
 
-    None if there are more than `room` pieces.
+    None is returned if there are more than `room` pieces.
     """
     cdef RayLines lines = lines_of(tables, node, port, nodes, ports, near)
     cdef const ptrdiff_t *rays = starts_of(starts, nodes, ports, lines.map.triangles)

@@ -85,7 +85,7 @@ cdef void *fills_real(array, bint single, shape) except NULL:
 
 
 cdef class LayerProgram:
-    """A recorded sequence of layers with their own arrays, executed in one call that holds no lock."""
+    """A recorded sequence of layers with their own arrays, which is executed in one call without the GIL."""
 
     cdef Layer layers[MOST_LAYERS]
     cdef int count
@@ -123,7 +123,7 @@ cdef class LayerProgram:
 
 
 cdef int take(Layer *layer, LayerProgram later, tuple arrays) except -1:
-    """Compute a layer, or record it; of its arrays the first goes in and the last comes out."""
+    """Compute a layer, or record it in `later`; the first of its arrays is the input, the last the output."""
     if later is None:
         if layer.c.batch * layer.c.m * layer.c.n * layer.c.inputs > 0:
             with nogil:
@@ -142,7 +142,7 @@ cdef int take(Layer *layer, LayerProgram later, tuple arrays) except -1:
 
 
 cdef int begin(Layer *layer, int kind, x, out, shape) except -1:
-    """Let a layer go from `x` (batch, m, n, inputs) to `out`, of that shape; no weights or summand yet."""
+    """Set the input `x` (batch, m, n, inputs) and the output `out` (`shape`) of a layer without weights and summand."""
     layer.kind, layer.single, layer.around = kind, is_single(x), False
     layer.c.batch, layer.c.m, layer.c.n, layer.c.inputs = x.shape
     layer.c.outputs, layer.c.size, layer.c.stride = shape[3], 0, 1
@@ -174,7 +174,7 @@ def convolve(x, w, bias, int size, int stride, add, out, LayerProgram later=None
 def activate(x, out, bint around=False, LayerProgram later=None):
     """Fill `out` (batch, m + 2, n + 2, channels) with x / (1 + exp(-x)) of `x` (batch, m, n, channels), padded by zeros.
 
-    With `around` the rows are periodic: the first and the last of the m + 2 repeat the last and the first of the m. An
+    With `around` the rows are periodic: the first of the m + 2 rows repeats the last of the m, the last the first. An
     `out` with the shape of `x` is not padded.
     """
     cdef Layer layer
@@ -187,7 +187,7 @@ def activate(x, out, bint around=False, LayerProgram later=None):
 def upsample(x, add, out, bint around=False, LayerProgram later=None):
     """Fill `out` (batch, 2 m - 1, 2 n - 1, channels) with `add` + `x` (batch, m, n, channels), interpolated linearly.
 
-    With `around` the rows are periodic: there are 2 m, the last of them between the last and the first of `x`.
+    With `around` the rows are periodic: there are 2 m, the last of which is between the last and the first of `x`.
     """
     cdef Layer layer
     shape = (x.shape[0], 2 * x.shape[1] - (0 if around else 1), 2 * x.shape[2] - 1, x.shape[3])

@@ -33,7 +33,7 @@ cdef extern from "rows/blade.h":
 def chebyshev_sums(coefficients, heights, out):
     """Fill `out` (levels, n) with sums of `coefficients` (terms, n) times Chebyshev polynomials at `heights` (levels, lines).
 
-    Heights are from 0 to 1; each is that of n / lines functions in a row.
+    Heights are from 0 to 1; each applies to n / lines consecutive functions.
     """
     cdef ptrdiff_t terms, n, levels, lines
     terms, n = coefficients.shape

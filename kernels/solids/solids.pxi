@@ -20,7 +20,7 @@ cdef extern from "solids/solids.h":
 
 
 cdef SolidNodes solid_nodes(nodes) except *:
-    """Return the planes of nodes (ni, nj, nk, 3), each of which is contiguous."""
+    """Return the coordinate planes of nodes (ni, nj, nk, 3), each of which must be contiguous."""
     cdef SolidNodes block
     block.ni, block.nj, block.nk = nodes.shape[:3]
     if nodes.shape[3:] != (3,) or block.ni < 2 or block.nj < 2 or block.nk < 2:
@@ -52,7 +52,7 @@ def solids_places(nodes, int test, counts, places):
 
 
 def solids_volumes(nodes, int threads, volumes):
-    """Fill the interior of volumes (ni+1, nj+1, nk+1) with those of the cells."""
+    """Fill the interior of `volumes` (ni+1, nj+1, nk+1) with the volumes of the cells."""
     cdef SolidNodes block = solid_nodes(nodes)
     cdef Written to = fills(volumes, (block.ni + 1, block.nj + 1, block.nk + 1))
     with nogil:

@@ -37,7 +37,7 @@ cdef ptrdiff_t *fills_indices(array, tuple shape) except NULL:
 
 
 cdef int pattern_of(tuple arrays, SparsePattern *pattern) except -1:
-    """Point to the arrays that `sparse_analyse` returned: order, parent, start, row, fill; and the block."""
+    """Set `pattern` from what `sparse_analyse` returned: order, parent, start, row, fill, block."""
     order, parent, start, row, fill, block = arrays
     cdef ptrdiff_t n = len(order)
     pattern.n, pattern.block = <int>n, block
@@ -54,9 +54,8 @@ cdef int pattern_of(tuple arrays, SparsePattern *pattern) except -1:
 def sparse_analyse(int n, rows, columns, int block):
     """Return the symbolic factorisation of a symmetric matrix of n rows, and the index (m,) of each distinct entry.
 
-    Rows are of `block` unknowns, 1 or 2.
-
-    Each off-diagonal entry is given in one triangle; entries with the same row and column are added.
+    A row has `block` unknowns, 1 or 2. Each off-diagonal entry is given in one triangle; entries with the same row and
+    column are added.
     """
     cdef ptrdiff_t m = len(rows)
     cdef int failed
@@ -78,7 +77,7 @@ def sparse_analyse(int n, rows, columns, int block):
 
 
 def sparse_factor(tuple pattern, values):
-    """Return the rows and values of L, the pivots, from `values` of the distinct entries; and the row that failed, or -1."""
+    """Return rows and values of L and the pivots, from `values` of distinct entries; and the row that failed, or -1."""
     cdef SparsePattern a
     cdef ptrdiff_t bad
     pattern_of(pattern, &a)
@@ -117,10 +116,10 @@ def sparse_multiply(tuple pattern, values, x, product):
 
 
 def normal_terms(unknowns, places, derivatives, weight, slope, values, right):
-    """Add the products of k residuals' derivatives to `values` of entries, and subtract sums from `right` (n, block).
+    """Add products of derivatives of k residuals to the entries `values`, and subtract sums from `right` (n, block).
 
-    `unknowns` (k, m) are -1 for those that are fixed; `places` (p, k) are twice the entry of each pair, and one more where
-    the first is eliminated before the second; -1 where one is fixed.
+    `unknowns` (k, m) are -1 for fixed values. `places` (p, k) is twice the entry of each pair, plus one if the first is
+    eliminated before the second; it is -1 if one of the pair is fixed.
     """
     cdef ptrdiff_t k = len(unknowns), m = unknowns.shape[1], n = len(right), b = right.shape[1]
     if not 1 <= b <= 2 or m > 100:

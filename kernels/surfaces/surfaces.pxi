@@ -51,7 +51,7 @@ cdef extern from "surfaces/growth.h":
 
 
 def surface_march(levels, heights, graph, settings, int threads):
-    """Fill `levels` (count + 1, 3, n) from level 0; return how many were made, the steps and the iterations.
+    """March `levels` (count + 1, 3, n) from level 0; return the numbers of levels made, of steps and of iterations.
 
     `heights` (count) are the distances of the levels from the wall. `graph` holds the arrays of ``graph.h``, `settings`
     the numbers of ``march.h``, in their order.
@@ -94,7 +94,7 @@ def respace_lines(marched, steps, fade, order, ptrdiff_t sweeps, lines, int thre
 
 
 def limit_line_growth(lines, double most, double used, double longest, double first, int threads):
-    """Move nodes of `lines` (3, n, levels) so that neighbouring cells differ less; see ``growth.h``."""
+    """Move nodes along `lines` (3, n, levels), in place, to reduce the growth ratios of cells; see ``growth.h``."""
     cdef ptrdiff_t n = lines.shape[1], levels = lines.shape[2]
     cdef Growth g = Growth(n, levels, most, used, longest, first, fills(lines, (3, n, levels)))
     cdef int failed

@@ -79,7 +79,7 @@ cdef class DelaunayMesh:
         mesh_free(&self.mesh)
 
     cdef const int32_t *_pairs(self, pairs) except NULL:
-        """Return the pairs (n, 2), of nodes with the corners of the box counted, once all are nodes of triangles."""
+        """Return the address of pairs (n, 2) of nodes, numbered with the box corners, after a check that all exist."""
         cdef ptrdiff_t n = len(pairs), k
         cdef const int32_t *node = <const int32_t *>numbers(pairs, b"i", 4, (n, 2), False)
         for k in range(2 * n):
@@ -132,7 +132,7 @@ cdef class DelaunayMesh:
     def force(self, pairs):
         """Flip edges until these pairs (n, 2) are edges, and mark them as walls.
 
-        Return for each pair the ends (n, 2) of a wall that blocks it, twice the same node that does, or -1 on success.
+        Return, for each pair, -1 on success, or the ends (n, 2) of a wall that blocks it, or twice a node that does.
         """
         cdef ptrdiff_t n = len(pairs), k
         cdef const int32_t *pair = self._pairs(pairs)
@@ -150,7 +150,7 @@ cdef class DelaunayMesh:
             raise MemoryError
 
     def refine(self, walls, double largest, double growth, sources, source_sizes, ptrdiff_t most):
-        """Insert nodes left of the walls (n, 2) until circumradii are below 0.75 of the local size, or `most` nodes exist."""
+        """Insert nodes left of the walls (n, 2) until circumradii are below 0.75 local sizes or `most` nodes exist."""
         cdef Sizes sizes
         cdef const int32_t *pair = self._pairs(walls)
         cdef ptrdiff_t n = len(walls)
@@ -186,8 +186,8 @@ cdef class DelaunayMesh:
         return places, sizes
 
     def triangles(self):
-        """Return the inner triangles, (t, 3) each: corners, numbered without the box, the triangles across edges i to i + 1
-        (-1: none) and the numbers of these edges there."""
+        """Return the inner triangles, (t, 3) each: corners, numbered without those of the box; neighbours at the edges
+        i to i + 1 (-1: none); numbers of these edges in the neighbours."""
         cdef ptrdiff_t k, n = 0, m = self.mesh.m
         cdef int i, other
         cdef Triangle *t

@@ -103,7 +103,7 @@ def winslow_residual(x, right, residual, int threads, room):
 
 
 def combine_along(source, int axis, first, weights, bint add, int threads, to):
-    """Set or add along `axis` of `to`: the sum over k of weights (m, k) times `source` at index first (m,) + k."""
+    """Write to `to`, or `add`, along `axis`, the sum over k of weights (m, k) times `source` at index first (m,) + k."""
     cdef ptrdiff_t n = source.shape[axis], m = to.shape[axis], before = 1, after = 1, terms = weights.shape[1]
     for size in source.shape[:axis]:
         before *= size
@@ -126,9 +126,9 @@ cdef extern from "volumes/lines.h":
 def volume_lines(nodes, int axis, low, high, double reach, int threads):
     """Move nodes of planes (3, n1, n2, n3) along the grid lines of direction `axis`, in place.
 
-    `low` and `high`, of the shape without that direction, are the lengths of the first and last steps, 0 where a line
-    is unchanged there, or None. The relative change of a step decays as exp(-k / `reach`) with its distance k from the
-    end.
+    `low` and `high`, arrays without that direction, are the new lengths of the first and last steps, 0 where a line
+    stays as it is at this end, or None. The relative change of a step decays as exp(-k / `reach`) with its distance k
+    from the end.
     """
     cdef ptrdiff_t before = 1, after = 1, n = nodes.shape[axis + 1]
     cdef int failed
@@ -162,10 +162,10 @@ cdef extern from "volumes/near_faces.h":
 
 
 def closed_node(tuple walls, tuple ranges, int threads):
-    """Return the number, in order, of the first node in `ranges` for which no valid place exists next to `walls`, or -1.
+    """Return the number of the first node in `ranges` that has no valid position next to `walls`, or -1.
 
-    `walls`: at most three (nodes (n, m, 3), axis, end), across different axes; `ranges`: first and last (excluded) of
-    inner nodes along each direction.
+    `walls`: at most three (nodes (n, m, 3), axis, end), across different axes; `ranges`: first and last (excluded)
+    index of inner nodes along each direction.
     """
     cdef Wall3 faces[3]
     cdef ptrdiff_t first[3]
