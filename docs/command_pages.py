@@ -18,7 +18,8 @@ _HEAD = """# Commands
 
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
-Look up a command here. `meshonet COMMAND --help` prints its page; `python -m meshonet_cli` is the same program.
+Look up a command here. `meshonet COMMAND --help` prints its page. `python -m meshonet_cli` is the same
+program.
 """
 """Start of the page of all commands."""
 

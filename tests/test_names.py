@@ -1,4 +1,4 @@
-"""One word for one thing: no two classes have one name without a reason; names are nouns."""
+"""One word for one thing: no two classes have one name; names are nouns."""
 
 import io
 import re
@@ -11,7 +11,6 @@ ROOT = Path(__file__).parents[1]
 ROOMS = ("geometry", "formats", "solvers", "meshonet_cli", "meshonet/api", "kernels")
 EVERYWHERE = (*ROOMS, "meshonet", "tests", "benchmarks", "examples", "docs")
 NOT_NOUNS = {"told", "found", "unasked"}
-PAGE = ROOT / "docs" / "development" / "architecture.md"
 
 
 @cache
@@ -24,20 +23,9 @@ def classes() -> dict[str, list[str]]:
     return modules
 
 
-def excused() -> set[str]:
-    """Return the names that the page on architecture gives a reason for: | `Name` | modules | reason |."""
-    table = PAGE.read_text().partition("## Classes of one name")[2].partition("\n## ")[0]
-    return {match[1] for match in re.finditer(r"^\| `(\w+)` \|[^|]+\|[^|]*\w[^|]*\|$", table, re.MULTILINE)}
-
-
 def test_a_class_name_stands_in_one_module() -> None:
     twice = {name: modules for name, modules in classes().items() if len(modules) > 1}
-    unexcused = {name: modules for name, modules in twice.items() if name not in excused()}
-    assert not unexcused, f"give one of them a name of its own: {unexcused}"
-
-
-def test_reasons_are_for_names_that_do_stand_twice() -> None:
-    assert excused() <= {name for name, modules in classes().items() if len(modules) > 1}
+    assert not twice, "give one of them a name of its own"
 
 
 def test_the_classes_are_seen() -> None:

@@ -58,8 +58,8 @@ class SamplingOptions:
     )
     te: Literal["auto", "exact", "round", "wedge"] = _option(
         default="auto", help="Shape of a blunt trailing edge. exact: unchanged. round: corners rounded. "
-        "wedge: closed by a wedge. auto: wedge in C grids that are not marched, and in C grids without a "
-        "first cell if the base is at most 0.005 chords high; else exact.",
+        "wedge: closed by a wedge. auto: wedge in C grids that are not marched, and in C grids whose base is "
+        "lower than one first cell, or lower than both 10 first cells and 0.005 chords; else exact.",
     )
     far_field: float | None = _option(
         metavar="R", help="Smallest distance of the far field from the middle of the body. Its unit is the "

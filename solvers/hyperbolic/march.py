@@ -112,7 +112,8 @@ def marched(front: Front, rows: int, layers: MarchLayers) -> Floats:
         cells += -(-(1 + (cells - least) // 8) // multiple) * multiple
         if cells > 2 * least + 8:
             problem = f"no number of rows keeps to a growth of {growth:g}"
-            raise InputError(problem, "allow more", parameter="growth")
+            base = ", use a smaller {first_cell}, or close the base with {te} wedge" if front.narrow else ""
+            raise InputError(problem, f"allow more{base}", parameter="growth")
         nodes = _unfolded(front, cells, layers)
     if cells > rows and not layers.free:
         raise _too_few(rows, cells, growth or MOST_GROWTH, multiple)
@@ -190,6 +191,8 @@ def _evened(front: Front, cells: int, layers: MarchLayers, settings: MarchSettin
             break
         rate = math.log(1.0 + (growth - 1.0) * WITHIN)
         shares = even_shares(nodes, steps, rate, constant)
+        if not shares.any():  # even equal steps grow too fast along some lines
+            break
         nodes, steps = _marched(front, cells, layers, settings, edge=None, shares=shares)
     if nodes is not None and growth is not None:
         faster = fastest(nodes) > math.log(growth)

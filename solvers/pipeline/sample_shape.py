@@ -26,7 +26,9 @@ if TYPE_CHECKING:
 MARCHING = ("best", "auto", "hyperbolic")
 """Method names with which grids with layers around airfoils are marched."""
 THIN_BASE = 0.005
-"""Largest height of a base, in chords, that C grids without layers close with a wedge by default."""
+"""Largest height of a base, in chords, that C grids close with a wedge by default, unless it is resolved."""
+RESOLVED = 10.0
+"""Height of a base in first cells from which on lines from its corners are straight enough to keep it."""
 
 _TURNED = "xi runs along the walls with layers, which are the sides south and north"
 """Note on a four-sided domain whose walls, according to the names of its sides, are west or east."""
@@ -99,8 +101,9 @@ def _check_refined(ni: int, nj: int, halvings: int) -> None:
 def keeps_base(shape: Shape, request: GridRequest) -> TypeGuard[Airfoil]:
     """Return whether a request marches a C grid that keeps the blunt base (trailing edge) of an airfoil.
 
-    With a first-cell height, or if `te` is ``exact``, all bases are kept. Otherwise a base is kept if it is
-    not thin, and if no option, such as `refine`, excludes such grids.
+    `te` ``exact`` keeps every base. With ``auto``, a base is kept if it is `RESOLVED` first cells high, or
+    if it is not thin and higher than the first cell. Without a first-cell height, it is kept if it is not
+    thin and no option, such as `refine`, excludes such grids.
     """
     sampling = request.sampling
     if request.method not in MARCHING or sampling.te not in ("auto", "exact"):
@@ -110,9 +113,13 @@ def keeps_base(shape: Shape, request: GridRequest) -> TypeGuard[Airfoil]:
     if not isinstance(shape, Airfoil):
         return False
     body = shape.prepared(sampling)
-    if not body.blunt or request.at_walls or sampling.te == "exact":
+    if not body.blunt or sampling.te == "exact":
         return body.blunt
-    return body.gap > THIN_BASE * body.chord and USES[AROUND_BASE].issuperset(request.chosen)
+    thick, height = body.gap > THIN_BASE * body.chord, request.height()
+    if height is not None:
+        least = (1.0 if thick else RESOLVED) * height * body.unit
+        return body.gap >= (1.0 - 1e-9) * least or sampling.base_nodes is not None
+    return thick and USES[AROUND_BASE].issuperset(request.chosen)
 
 
 def _behind_base(shape: Airfoil, sampling: Sampling, request: GridRequest) -> BaseWake:

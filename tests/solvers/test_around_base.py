@@ -31,7 +31,7 @@ def blunt(base: float, slant: float = 0.0) -> Airfoil:
     return Airfoil(np.concatenate([upper[::-1], lower[1:]]), f"blunt {base:g}")
 
 
-def made(body: Airfoil, first: float = 1e-5, growth: float | None = 1.2, **sampling: int) -> Result:
+def made(body: Airfoil, first: float = 1e-5, growth: float | None = 1.2, **sampling: int | str) -> Result:
     return make_grid(
         body,
         GridRequest(sampling=Sampling(topology="c", **sampling), first_cell=first, growth=growth),  # type: ignore[arg-type]
@@ -133,6 +133,27 @@ def test_a_base_stays_without_layers_unless_it_is_thin() -> None:
     assert meshonet.grid(blunt(0.04), topology="c", te="wedge").topology == "c"
 
 
+@pytest.mark.parametrize(("base", "first"), [(0.0025, 3e-4), (0.0025, 5e-3), (0.005, 0.02), (0.02, 0.021)])
+def test_a_base_that_first_cells_do_not_resolve_is_closed_by_a_wedge(base: float, first: float) -> None:
+    result = made(blunt(base), first=first)
+    assert result.quality.folded == 0
+    assert result.quality["max_angle"].max < 171.0
+    assert len(result.grid.blocks) == 1
+    assert any("is closed by a wedge" in note for note in result.notes)
+
+
+@pytest.mark.parametrize(("base", "first"), [(0.0025, 2.5e-4), (0.02, 5e-3)])
+def test_a_base_ten_first_cells_or_half_a_percent_of_the_chord_high_stays(base: float, first: float) -> None:
+    assert len(made(blunt(base), first=first).grid.blocks) == 2
+    assert len(made(blunt(base), first=1.5 * first, base_nodes=9, growth=None).grid.blocks) == 2
+
+
+def test_first_cells_twice_as_high_as_a_base_have_a_remedy() -> None:
+    remedies = r"no number of rows .* smaller first_cell, or close .* te wedge"
+    with pytest.raises(InputError, match=remedies):
+        made(Airfoil(meshonet.read("naca:4412").curve.points[1:], "4412"), first=0.01, te="exact")
+
+
 @pytest.mark.parametrize(("ni", "most"), [(81, 0.18), (121, 0.13)])
 def test_few_nodes_are_shared_between_wake_and_wall(ni: int, most: float) -> None:
     result = made(blunt(0.08), first=1e-4, growth=None, ni=ni, nj=33)
@@ -179,7 +200,7 @@ def test_cells_grow_as_asked_off_a_concave_corner(topology: Literal["o", "c"]) -
 @pytest.mark.parametrize(("base", "first"), [(0.0025, 1e-3), (0.005, 5e-4), (0.02, 5e-3)])
 def test_first_cells_too_thick_for_a_base_are_noted_with_ones_that_fit(base: float, first: float) -> None:
     def advice(first: float) -> tuple[list[float], float]:
-        result = made(blunt(base), first=first, growth=None, ni=257, nj=65)
+        result = made(blunt(base), first=first, growth=None, ni=257, nj=65, te="exact")
         notes = "; ".join(result.notes)
         fits = re.findall(r"too thick for a base .* use {first_cell} (\S+) or less, or {te} wedge", notes)
         return [float(size) for size in fits], result.quality["max_angle"].max
