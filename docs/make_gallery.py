@@ -31,9 +31,9 @@ HEAD = """# Multi-block grids of plane domains
 <!-- made by python docs/make_gallery.py (make gallery) -->
 
 Look here for the [block decomposition](../guide/blocks.md) of a shape similar to yours. `meshonet solve-pde
-DOMAIN.geojson --cells 900` generated each grid. Thick lines are the sides of blocks. At a yellow dot three cells
-meet, at a red dot five or more. `python examples/domains/domains.py FOLDER` writes the domain files. The
-[benchmark](../benchmarks/domains.md) gives numbers of cells and angles.
+DOMAIN.geojson --cells 900` generated each grid. Thick lines are the sides of blocks. At a yellow dot three
+cells meet, at a red dot five or more. `python examples/domains/domains.py FOLDER` writes the domain files.
+The [benchmark](../benchmarks/domains.md) gives numbers of cells and angles.
 """
 TABLE = """# Multi-block grids of thirty domains
 

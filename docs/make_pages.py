@@ -28,8 +28,8 @@ Look here for the training parameters of the models (neural networks that genera
 meshonet. [Neural operators](../theory/operators.md) helps to choose a model, and [held-out
 errors](../benchmarks/models.md) gives the accuracy of each. `meshonet models NAME` prints the same data.
 
-Each model is a safetensors file in `solvers/neural/pretrained/`, whose metadata contain these data. `make train`
-repeats the training.
+Each model is a safetensors file in `solvers/neural/pretrained/`, whose metadata contain these data. `make
+train` repeats the training.
 
 | training parameter | meaning |
 | --- | --- |
@@ -61,9 +61,9 @@ folded cells.
 C_GRIDS = """## C grids: no model
 
 meshonet has no model for C grids, because marching gives better C grids than every network that was tested
-([measurements](../benchmarks/body-operator.md#c-grids-no-model)). The C grids that `quad-general` predicts are
-worse than those of transfinite interpolation. `airfoil-o` assumes that the grid is periodic in ξ, which a C
-grid is not.
+([measurements](../benchmarks/body-operator.md#c-grids-no-model)). The C grids that `quad-general` predicts
+are worse than those of transfinite interpolation. `airfoil-o` assumes that the grid is periodic in ξ, which
+a C grid is not.
 
 `meshonet infer` generates C grids by [marching](../theory/marching.md) from the wall and the wake, or by the
 variational method if marching fails. For C grids the options `--model`, `--polish` and `--device` are errors.
@@ -78,13 +78,14 @@ by the file extensions. If an extension belongs to several formats, name the for
 `meshonet convert --list-formats` prints this table.
 
 - *names*: whether the format stores names of boundary patches.
-- *3D*: the kinds of three-dimensional grids that the format stores. If it stores *volumes*, `--extrude H` writes
-  a two-dimensional grid as a volume of thickness H.
+- *3D*: the kinds of three-dimensional grids that the format stores. If it stores *volumes*, `--extrude H`
+  writes a two-dimensional grid as a volume of thickness H.
 - *blocks*: whether the blocks of a multi-block grid are *kept* in the file or *merged* into one unstructured
   mesh. A format without an entry cannot store a multi-block grid.
 - *many*: whether one file can contain several grids or boundaries.
 - *options*: variants of the format. Write them after a colon, for example `--to gmsh:4.1,ascii`. Of words
-  separated by slashes, choose at most one. The first word is the default, unless the extension implies another.
+separated by slashes, choose at most one. The first word is the default, unless the extension implies
+another.
 
 """
 FORMATS_REST = """

@@ -82,7 +82,8 @@ def test_the_reference_is_what_help_prints(command: str) -> None:
 
 def test_the_reference_has_both_halves_of_switches() -> None:
     pages = {page.stem: page.read_text() for page in (REFERENCE / "commands").glob("*.md")}
-    assert {name for name, page in pages.items() if "--repair / --no-repair" in page} == {"tfi", "solve-pde", "infer"}
+    repairing = {name for name, page in pages.items() if "--repair / --no-repair" in page}
+    assert repairing == {"tfi", "solve-pde", "infer"}
     assert "--slide / --no-slide" in pages["solve-pde"]
 
 
