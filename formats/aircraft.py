@@ -25,7 +25,8 @@ from meshonet.geometry.sections.stack import Stack
 def read_aircraft(data: Table, source: Source) -> Aircraft:
     """Return the aircraft that a table of a TOML file describes.
 
-    Paths are relative to the folder of `source`. Raises InputError: unknown key; invalid value; not one body.
+    Paths are relative to the folder of `source`. Raises InputError if a key is unknown, a value is invalid or
+    a file is unreadable, or if there is not exactly one body.
     """
     data.only("kind", "name", "bodies", "wings", "half")
     folder = source.path.parent if source.path else Path()

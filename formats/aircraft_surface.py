@@ -52,8 +52,9 @@ class _Patches:
 def surface_body(row: Table, folder: Path) -> tuple[Body, AircraftAxes, tuple[str, ...]]:
     """Return the body that the table `row` describes, the axes of its file, and notes for the user.
 
-    The default of `patches` is all patches with a side in the plane of symmetry. Paths are relative to
-    `folder`. Raises InputError if the file has no surface, or if the body has holes or is not one half.
+    The key ``patches`` may select patches of the file; the default is those with a side in the plane of
+    symmetry. Paths are relative to `folder`. Raises InputError if the file has no surface, or if the body has
+    holes or is not one half.
     """
     row.only("name", *KEYS)
     file = _read(row, folder)
@@ -90,8 +91,9 @@ def _lofted(cuts: BodyCuts, name: str) -> LoftedBody:
 def surface_wing(row: Table, folder: Path, axes: AircraftAxes) -> SurfaceWing:
     """Return the wing that the table `row` describes, in the `axes` of the aircraft.
 
-    The default of `patches` is all patches without a side in the plane of symmetry. Paths are relative to
-    `folder`. Raises InputError if the file has no surface, or if its patches do not enclose a wing.
+    The key ``patches`` may select patches of the file; the default is those without a side in the plane of
+    symmetry. Paths are relative to `folder`. Raises InputError if the file has no surface, or if its patches
+    do not enclose a wing.
     """
     row.only("on", "name", *KEYS)
     file = _read(row, folder)

@@ -35,11 +35,11 @@ class Format:
     read_grids, write_grids, write_boundaries, write_layouts : functions; None if not supported.
     sniff : function that recognises a file by its first `HEAD_BYTES` bytes.
     names_patches : whether the format stores the topology and the names of patches.
-    blocks : how planar blocks are written: ``kept``, ``merged`` into one unstructured mesh, or empty for not.
+    blocks : how planar blocks are written: ``kept``, or ``merged`` into one unstructured mesh; empty: never.
     space : kinds of three-dimensional grids that can be read and written.
     many : whether one file can contain several grids or boundaries.
     one_size : whether all samples of a file must have the same node counts and topology.
-    beside : whether a file needs other files next to it, so that it cannot be written to a stream.
+    beside : whether other files are written next to the file, so that it cannot be written to a stream.
     fills_folder : whether a grid fills a folder, for which its file stands.
     choices : groups of options that exclude each other; a user may append options to the name.
     reads_options : whether `read_grids` has a parameter ``options``, as `write_grids` has.
@@ -115,7 +115,7 @@ class Format:
 
 
 def later(function: str, /, *args: Any, **settings: Any) -> Any:
-    """Import and call `function`, named ``package.module:name``, only now; return its result."""
+    """Import and call `function`, named ``package.module:name``, and return its result."""
     module, _, name = function.partition(":")
     return getattr(importlib.import_module(module), name)(*args, **settings)
 

@@ -34,7 +34,7 @@ class Numbered(NamedTuple):
 
 @dataclass(frozen=True)
 class Inputs:
-    """Inputs as the user named them. Iteration yields a file for each, or an InputError.
+    """Inputs as the user named them; iteration yields the files they stand for, or InputError objects.
 
     Parameters
     ----------

@@ -29,9 +29,9 @@ def whole_file(destination: str, *, make_folder: bool = False, beside: bool = Fa
 
     The temporary file is in the folder of the destination and is renamed in one step. If the destination is
     ``-`` (standard output), a device or a pipe, its content is copied at the end. After any exception it is
-    removed and the destination is unchanged. `make_folder` makes a missing folder. `beside` means that a
-    folder is written as well, which raises InputError for a stream. Raises InputError if the destination is a
-    folder or its folder is missing or not writable, or if the disk is full.
+    removed and the destination is unchanged. `make_folder` makes a missing folder. `beside` means that other
+    files are written next to it. Raises InputError if the destination is a folder, or with `beside` a stream,
+    if its folder is missing or not writable, or if the disk is full.
 
     Examples
     --------

@@ -38,7 +38,7 @@ class Table:
 
     @contextmanager
     def in_file_of(self, key: str) -> Iterator[None]:
-        """Return a context in which errors in reading the file that is the value of `key` name this key."""
+        """Return a context in which an error in the file that `key` names becomes an error of this key."""
         try:
             yield
         except InputError as error:

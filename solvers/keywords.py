@@ -12,8 +12,7 @@ Request = TypeVar("Request")
 def request_from(kind: type[Request], what: str, parameters: Mapping[str, Any]) -> Request:
     """Return a request of the class `kind`; ``wall_spacing`` is another name of its ``first_cell``.
 
-    Raises InputError as `kind`, and for an unknown parameter. `what` is the kind of grid in messages: ``a
-    row``.
+    Raises InputError as `kind`, and for unknown parameters. `what` names the kind of grid in messages.
     """
     named = {"first_cell" if name == "wall_spacing" else name: each for name, each in parameters.items()}
     known = {each.name for each in fields(kind)}  # type: ignore[arg-type]
@@ -22,7 +21,7 @@ def request_from(kind: type[Request], what: str, parameters: Mapping[str, Any]) 
 
 
 def refuse_given(what: str, options: Mapping[str, object]) -> None:
-    """Raise InputError if one of the `options` is neither None nor False; `what` does not have it."""
+    """Raise InputError if one of the `options`, which `what` does not have, is neither None nor False."""
     for name, value in options.items():
         if value is not None and value is not False:
             raise InputError(f"{what} has no {{{name}}}", f"leave {{{name}}} out")

@@ -242,7 +242,7 @@ def _text(value: object) -> str:
 
 
 def check_heaps(source: Source) -> None:
-    """Raise InputError if, in a heap of texts of variable length, the lengths do not add up to the heap's."""
+    """Raise InputError if texts do not fill the storage area (heap) of texts that they are in."""
     if source.size > _MOST_SEARCHED:
         return
     with source.open() as stream, contextlib.ExitStack() as stack:

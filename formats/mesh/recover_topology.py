@@ -18,7 +18,7 @@ def boundary_of(grid: Grid) -> Shape:
     """Return the outer edges of `grid` as a boundary with its topology, patches and name.
 
     A multi-block grid gives its domain, with its blocks if they share complete sides. A three-dimensional
-    grid gives a shape. Raises InputError if the edges do not form a boundary or the blocks no layout.
+    grid gives a `SpatialShape`. Raises InputError if the edges form no boundary or the blocks no layout.
     """
     if grid.form != "plane":
         return SpatialShape(grid)

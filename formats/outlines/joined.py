@@ -34,7 +34,10 @@ def extent_checked(points: Floats) -> float:
 
 
 def joined(lines: list[tuple[str, Floats]]) -> MeshBoundary:
-    """Return curves (n, 2) as a mesh boundary, in which coincident ends are one point; error: too large."""
+    """Return curves (n, 2) as a mesh boundary, in which coincident ends are one point.
+
+    Raises InputError if the curves have too many points.
+    """
     lines = [(name, line[np.append(True, (np.diff(line, axis=0) != 0).any(axis=1))]) for name, line in lines]
     lines = [(name, line) for name, line in lines if len(line) > 1]
     if sum(len(line) for _, line in lines) > MOST_EDGES:

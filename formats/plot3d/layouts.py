@@ -44,7 +44,7 @@ class FileLayout:
         return int(self.counted) + self.axes * len(self.dims)
 
     def starts(self, real: int = 1, integer: int = 1) -> list[int]:
-        """Return where each block and the end begin; numbers take `real` or `integer` bytes."""
+        """Return the positions of the blocks and of the end; numbers take `real` or `integer` bytes."""
         node = self.axes * real + integer * int(self.iblank)
         return list(
             itertools.accumulate((node * prod(dims) for dims in self.dims), initial=integer * self.header)

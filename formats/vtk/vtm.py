@@ -30,7 +30,10 @@ _OURS = re.compile(r"block-\d+\.vts")  # names of the files that this package wr
 
 
 def write_grids(path: Path, grids: Iterable[Grid], cell_data: CellData | None = None) -> None:
-    """Write grids as ``.vtm``, with optional cell data. Raises InputError: no grid; a foreign folder."""
+    """Write grids as ``.vtm``, with optional cell data; the blocks are files in a folder next to it.
+
+    Raises InputError if there is no grid, or if this folder contains other files.
+    """
     folder = path.with_name(f"{Path(final_name(path)).stem}_blocks")
     if folder.is_dir() and not all(_OURS.fullmatch(entry.name) for entry in folder.iterdir()):
         shown = printable(str(folder.name))

@@ -43,7 +43,7 @@ def write_boundaries(batch: Batch, sampling: Sampling, sensors: int | None = Non
 
 
 def itself(member: Draw) -> Iterator[Draw]:
-    """Yield `member`: a drawn member of a family needs not be read."""
+    """Yield `member`, which was drawn from a family and need not be read."""
     return iter([member])
 
 

@@ -15,11 +15,11 @@ FAR = 37.0  # exp(-37) is the precision of a double: modes that have decayed so 
 def extend(boundary: Boundary) -> Floats:
     """Return the nodes (ni, nj, 2) of the harmonic extension of a `boundary`, whose own nodes are kept.
 
-    A sum over the sides adds series in sin or exp with the Fourier coefficients b_k or c_k of each side. eta
-    is 0 at this side. a is height / length of a rectangle, T is log(outer length / inner length) of a ring::
+    Each side adds a series with the Fourier coefficients b_k or c_k of its nodes; eta is 0 at this side. a is
+    height / length of a rectangle, T is log(outer length / inner length) of a ring::
 
-        quad   corners, bilinear + sum over sides, k of b_k sin(k pi xi) sinh(k pi a (1 - eta)) / sinh(k pi a)
-        o      means, linear + sum over walls, k of c_k exp(2 pi i k xi) sinh(k T (1 - eta)) / sinh(k T)
+        quad   bilinear in corners + sum over sides, k of b_k sin(k pi xi) sinh(k pi a (1-eta)) / sinh(k pi a)
+        o      linear in wall means + sum over walls, k of c_k exp(2 pi i k xi) sinh(k T (1-eta)) / sinh(k T)
 
     >>> s, zero, one = np.linspace(0.0, 1.0, 5), np.zeros(5), np.ones(5)
     >>> square = Boundary(*(np.stack(edge, axis=1) for edge in [(s, zero), (s, one), (zero, s), (one, s)]))

@@ -137,15 +137,16 @@ def picard(
 ) -> tuple[Complexes, list[float]]:
     """Return the modes of F after at most `steps` Picard steps, and the largest change of F in each step.
 
-    A grid in the strip is w(theta, eta) = psi + i phi; F = w - i theta has the period 2 pi in theta. A step
-    inverts the operator with the coefficients T^2, 0 and 1 of a uniform strip of height T in place of::
+    A grid in the strip is w(theta, eta) = psi + i phi; F = w - i theta has the period 2 pi in theta. It
+    solves::
 
         alpha w_tt - 2 beta w_te + gamma w_ee = 0
         alpha = |w_e|^2,  beta = Re(conj(w_t) w_e),  gamma = |w_t|^2
 
-    The iteration ends after a step whose change is below `settled` or at least `diverged`; a change that is
-    not finite counts as infinite. `c` (2 MODES + 1, LEVELS) are the modes at the Chebyshev points. The modes
-    at the two walls do not change.
+    A step inverts this operator with the coefficients T^2, 0 and 1 of a uniform strip of height T. The
+    iteration ends after a step whose change is below `settled` or at least `diverged`; a change that is not
+    finite counts as infinite. `c` (2 MODES + 1, LEVELS) are the modes at the Chebyshev points. The modes at
+    the two walls do not change.
     """
     T = float((c[0, -1] - c[0, 0]).real)
     parts, grid = np.stack([c.real, c.imag]), across()

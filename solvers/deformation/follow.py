@@ -73,7 +73,7 @@ class Follow:
 
     @classmethod
     def of(cls, table: NodeTable, moved: Bools) -> Self:
-        """Return the map for the nodes of `table`; mask `moved` (n,): nodes with prescribed positions."""
+        """Return the map for the nodes of `table`; `moved` (n,) masks nodes with prescribed positions."""
         nodes, sources = table.nodes, sources_of(table, moved)
         near = _near(nodes[moved], nodes[sources.fixed])
         held = np.union1d(np.flatnonzero(moved), sources.fixed)
@@ -130,7 +130,7 @@ def _near(moved: Floats, fixed: Floats) -> float:
 
 
 def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
-    """Return the unit normal (d,) of a side, or None unless it is flat before and after (`there`)."""
+    """Return the unit normal (d,) of a side that is flat, also with the nodes `there` (n, d); else None."""
     nodes, after = (each[piece.numbers.ravel()] for each in (table.nodes, there))
     centre = nodes.mean(axis=0)
     _, size, ways = singular_values(nodes - centre)

@@ -141,7 +141,7 @@ class Chords:
         return along
 
     def cut_off(self) -> Floats:
-        """Return the area (e,) between the wall and straight sides of cells at each edge; 0 inside."""
+        """Return for each edge the area (e,) between the wall and straight sides of cells; 0 inside."""
         lost = np.zeros(len(self.edges))
         part = np.linspace(0.0, 1.0, 5)
         for edge, loop, arcs in self._walls():
@@ -158,9 +158,10 @@ class Chords:
         return float(np.radians(turning_between(loop, arcs[:-1], arcs[1:]).max()))
 
     def counts_for_size(self, size: float, least: Indices | None = None) -> Indices:
-        """Return counts (chords,) for cells of the given size, at least `least`, by default the property.
+        """Return counts (chords,) for cells of the given size.
 
-        The count of a chord is the rounded geometric mean of length / size over its edges.
+        The count of a chord is the rounded geometric mean of length / size over its edges. It is at least
+        that of `least` (chords,), by default the property of this name.
         """
         wanted = log(np.maximum(self.lengths / size, 1e-9))
         mean = np.bincount(self.chord, wanted, self.count) / np.bincount(self.chord, minlength=self.count)

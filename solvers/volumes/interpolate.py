@@ -68,8 +68,7 @@ def interpolate(
     """Return nodes (ni, nj, nk, 3) by transfinite interpolation between `faces`; a `spline` is added.
 
     `laws` are the parameters of nodes along edges (see `uniform_laws`). The result is stored in `out` (3, ni,
-    nj, nk) if given, since allocation takes as long as the computation. Gordon and Hall, Int. J. Numer.
-    Methods Eng. 7 (1973) 461-477.
+    nj, nk), if given. Gordon and Hall, Int. J. Numer. Methods Eng. 7 (1973) 461-477.
     """
     planes = np.empty((3, *faces.counts)) if out is None else out
     sides = tuple(np.moveaxis(face, -1, 0) for face in faces.faces)

@@ -18,7 +18,7 @@ from meshonet.solvers.volumes.interpolate import Laws, Spline, interpolate, unif
 def refine_volume(coarse: Floats, coarse_faces: SixFaces, faces: SixFaces, laws: Laws) -> Floats:
     """Return nodes (3, ni, nj, nk) inside `faces` at `laws`, by splines through coarse nodes.
 
-    `coarse` (3, mi, mj, mk) are nodes inside `coarse_faces` at equal steps. All four rows of a law must be
+    `coarse` (3, mi, mj, mk) are nodes inside `coarse_faces` at equal steps. The rows of each law must be
     equal.
     """
     start = interpolate(coarse_faces, uniform_laws(coarse_faces.counts))

@@ -62,8 +62,8 @@ def slower_steps(steps: Floats, last_growth: Floats, growth: float) -> Floats:
 def limit_growth(lines: Floats, growth: float) -> None:
     """Move nodes along `lines` (3, n, levels), in place, so that cells grow by at most `growth`.
 
-    First cells, last nodes and lines within the limit do not change. On a line too long for it, cells grow
-    evenly.
+    First cells, last nodes and lines within the limit do not change. If a line is too long for the limit, all
+    its cells grow by one ratio.
     """
     if math.isinf(growth):
         return
