@@ -1,7 +1,7 @@
 """Compiled arithmetic: all C of the project, bound by one extension module, ``_native``.
 
-A folder is a subject: its C sources, and a ``.pxi`` file with what Python sees of them. Arrays are checked
-there, once; functions fill arrays that their callers made.
+Each subject has a folder with its C sources and a ``.pxi`` file, which declares what Python can call and
+checks all arrays. The functions write their results into arrays that the caller has made.
 """
 
 if __name__ == "kernels":

@@ -1,4 +1,4 @@
-"""The compiled functions, a subject a file; what they compute stands in the C sources beside these."""
+"""The compiled functions, in a file for each subject; the C sources next to it say what they compute."""
 
 import numpy as np
 
