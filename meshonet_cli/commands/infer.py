@@ -56,8 +56,9 @@ def infer(
     O grids are made by a conformal map, or with a first cell by marching from the wall. C grids are marched.
     Four-sided grids are made by the variational method, or with a first cell by Winslow's equations. Other
     planar domains are split into blocks. Volumes inside six faces are made by the variational method. With a
-    first cell, the volume outside a surface is marched. A neural operator makes the grid only with --model,
-    --polish, --device or --fallback; the report then gives the expected error.
+    first cell, the volume outside a surface is marched. A neural operator makes the grid with --model,
+    --polish, --device or --fallback, and around bodies that have no suitable conformal map; the report then
+    gives the expected error.
     """
     from meshonet_cli.tasks.grids import write_grids
 

@@ -19,7 +19,7 @@ PART = 0.05
 """Ratio of the first-cell height to the smallest wall cell; with 0.25, lines lean by up to 80 degrees."""
 MOST = 0.25  # the same where rows are few, so that they grow by no more than `GROWTH`
 GROWTH = 1.2  # largest ratio of neighbouring rows
-CHOSEN = "no first cell was asked for: it follows from the smallest one along the wall"
+CHOSEN = "{first_cell} is not given: the first-cell height follows from the length of the shortest wall cell"
 _TALLEST = 3000  # rows beyond which the power of the growth ratio would exceed the range of numbers
 STEEPEST = 1.3  # growth beyond which marched grids have larger angles than variational ones
 

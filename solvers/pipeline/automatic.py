@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from meshonet.geometry.blocks.boundary import Boundary
@@ -64,16 +64,13 @@ class Anew(Wrapper):
 class AroundWake(OneByOne):
     """Makes C grids by marching, or by the variational method if marching does not suit the boundary."""
 
-    note: str = ""  # begins the notes, before the method's name
     name: str = "auto"
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:  # noqa: ARG002
         """Return the solution of a boundary; an initial grid is not used."""
         from meshonet.solvers.hyperbolic.default_spacing import march_by_default
 
-        solution = march_by_default(boundary) or Fewer(method_named("variational")).solve_one(boundary)
-        notes = (f"{self.note} {solution.method}", *solution.notes) if self.note else solution.notes
-        return replace(solution, notes=notes)
+        return march_by_default(boundary) or Fewer(method_named("variational")).solve_one(boundary)
 
 
 def elliptic() -> Auto:

@@ -100,7 +100,7 @@ class Best(OneByOne):
         if boundary.topology == "quad":
             return Fewer(method_named("variational")).solve_one(boundary, start)
         if boundary.topology == "c":
-            return AroundWake("no shipped model makes c grids: this one is").solve_one(boundary)
+            return AroundWake().solve_one(boundary)
         from meshonet.solvers.conformal.solve import solve
 
         return solve([boundary], substitute=_by_network)[0]

@@ -114,8 +114,7 @@ def test_c_grids_without_a_first_cell_are_marched_and_the_report_says_so(meshone
     assert report["folded"] == 0
     assert report["topology"] == "c"
     assert report["method"] == "hyperbolic"
-    assert any("no shipped model makes c grids" in note for note in report["notes"])
-    assert any("no first cell was asked for" in note for note in report["notes"])
+    assert any("--first-cell is not given: the first-cell height follows" in note for note in report["notes"])
 
 
 def test_repair_is_a_switch_here_too(meshonet: Meshonet, folding_h5: Path) -> None:
