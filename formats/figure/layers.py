@@ -215,7 +215,7 @@ def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tup
 def line_step(length: Floats, area: Floats, pixels: float) -> int:
     """Return the step 1, 2, 5, 10, ... between lines that are 6 pixels or more apart in half of the area.
 
-    `length` and `area` are those of `line_gaps`; `pixels` is the number of pixels per unit of length.
+    `length` and `area` are a pair from `line_gaps`; `pixels` is the number of pixels per unit of length.
     """
     length = length * pixels
     order = np.argsort(length)

@@ -148,7 +148,7 @@ def _patch(name: str, side: Side, start: int, stop: int, block: int = 0, *more: 
 
 @dataclass(frozen=True)
 class DatasetSamples:
-    """Samples of a dataset. `rows` are their indices among those of `split`, or among all if it is empty."""
+    """Samples of a dataset; `rows` are their indices among the samples of `split`, or among all samples."""
 
     name: str
     split: str

@@ -40,9 +40,9 @@ def matched(connection: Connection, blocks: Sequence[Block]) -> Connection:
 
 
 def like_others(connection: Connection, motions: list[Motion]) -> Connection:
-    """Return a periodic connection with a nearly equal motion of `motions` in place of its own.
+    """Return a periodic connection; if its motion nearly equals one of `motions`, that one replaces it.
 
-    If there is none, its motion is added to `motions`. Nearly equal motions thus become bitwise equal.
+    Otherwise its motion is added to `motions`. Nearly equal motions thus become bitwise equal.
     """
     for known in motions:
         for each in (connection, connection.reversed()):

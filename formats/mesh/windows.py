@@ -48,7 +48,7 @@ class Pair(NamedTuple):
 
 
 class SidePart(NamedTuple):
-    """A node range of a side; for each direction of the side, the file's index and the sign 1 or -1."""
+    """A part of a side; for each direction: node range, index in the file, and -1 if the file reverses it."""
 
     side: Side
     range: Range

@@ -20,7 +20,7 @@ _MOST_REPEATED = 4  # largest plausible number of values per byte of the file, w
 
 
 def candidates(data: bytes, wanted: Options = frozenset()) -> list[Candidate]:
-    """Return all layouts with as many numbers as the text file; plane by plane only if `wanted`.
+    """Return all layouts with the count of numbers in a text file; stored by planes only if `wanted`.
 
     Raises InputError if a word is not a number, or if no layout fits.
     """

@@ -81,7 +81,7 @@ class Body:
 
     @cached_property
     def arc(self) -> Floats:
-        """Arc lengths (n,) at the given points, measured along straight lines between them."""
+        """Arc lengths (n,) at the points of the meridian, measured along straight lines between them."""
         return arc_lengths(self.meridian)
 
     @cached_property

@@ -92,7 +92,7 @@ def part_of(values: AnyArray, span: Range) -> AnyArray:
 
 
 def face_counts(counts: tuple[int, ...], side: Side) -> tuple[int, ...]:
-    """Return the node counts along the directions of a side, from the `counts` along those of the block."""
+    """Return the node counts along the directions of a side of a block with the node counts `counts`."""
     axis = PLACES[side][0]
     return counts[:axis] + counts[axis + 1 :]
 

@@ -105,7 +105,7 @@ def resample_patches(
 
 
 def patches_in_place(had: Boundary, has: Boundary) -> tuple[Patch, ...]:
-    """Return the patches of `had` for `has`, a boundary with the same edges but other nodes.
+    """Return the patches of the boundary `had`, moved to `has`, which has the same edges but other nodes.
 
     Each end of a patch moves to the node at the nearest fraction of the side's length.
     """

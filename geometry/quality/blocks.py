@@ -88,7 +88,7 @@ def block_figures(grid: Grid, quality: Quality | None = None, run: Lines | None 
 
 
 def block_counts(grid: Grid, nodes: Vertices | None = None) -> BlockCounts:
-    """Return blocks and irregular vertices of a grid; `nodes` are the grid's vertices, if known."""
+    """Return blocks and irregular vertices of a grid; `nodes` is the result of `vertices`, or None."""
     sizes = tuple(block.counts for block in grid.blocks)
     if grid.form == "volume":
         return BlockCounts(sizes, None)

@@ -34,7 +34,7 @@ class Gate:
     limit: float  # limit, in the unit of the metric
 
     def figure(self, figures: "Figures", more: Mapping[str, Figure] = NO_MORE) -> Figure:
-        """Return the figure that the gate limits, from `more` or `figures`. Raises InputError: in neither."""
+        """Return the figure that the gate limits. Raises InputError: neither in `figures` nor in `more`."""
         figure = more.get(self.metric) or figures(self.metric, self.statistic)
         if figure is None:
             known = [name for name in COUNTS if figures(name)]
@@ -43,7 +43,7 @@ class Gate:
         return figure
 
     def broken(self, figures: "Figures", more: Mapping[str, Figure] = NO_MORE) -> str | None:
-        """Return a message if the grid fails by this gate, otherwise None. Raises InputError: as `figure`."""
+        """Return a message if the grid fails by this gate, otherwise None. Raises InputError as `figure`."""
         figure = self.figure(figures, more)
         if not beyond(figure.value, self.compare, self.limit):
             return None
@@ -71,7 +71,7 @@ def beyond(value: float, compare: str, limit: float) -> bool:
 
 
 def end_of(compare: str) -> str:
-    """Return the statistic to which a limit without one applies: ``max`` for ``>``, ``min`` for ``<``."""
+    """Return the statistic that a gate limits if it names none: ``max`` for ``>``, ``min`` for ``<``."""
     return "max" if compare in (">", ">=") else "min"
 
 

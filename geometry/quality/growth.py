@@ -121,7 +121,7 @@ def most_of(extremes: Iterable[Extreme | None]) -> Extreme | None:
 
 
 def beyond_seam(grid: Grid) -> Floats:
-    """Return the nodes (ni, nj, 2) of a grid; in an O grid, those of i = 1 are repeated at the end."""
+    """Return the nodes (ni, nj, 2) of a grid; in an O grid, the nodes with i = 1 are repeated at the end."""
     return np.concatenate([grid.nodes, grid.nodes[1:2]]) if grid.periodic else grid.nodes
 
 
@@ -133,7 +133,7 @@ def across_wake(grid: Grid) -> Floats:
 
 
 def strips(nodes: Floats, more: int) -> Iterator[tuple[int, Floats]]:
-    """Yield parts of `nodes` (ni, nj, 2), each with its first i; neighbours share `more` values of i."""
+    """Yield first i and nodes of parts of `nodes` (ni, nj, 2); successive parts share `more` values of i."""
     for i in range(0, max(len(nodes) - more, 0), ROWS):
         yield i, nodes[i : i + ROWS + more]
 

@@ -45,7 +45,7 @@ class WallRow:
 def wall_rows(
     grid: Grid, walls: Sequence[Patch], growth: Mapping[str, Extreme] = NO_GROWTH
 ) -> tuple[WallRow, ...]:
-    """Return the figures of the first cells at `walls`: per wall, or per name in a multi-block grid.
+    """Return the figures of the first cells at `walls`: for each wall, in multi-block grids for each name.
 
     `growth` is the growth along the grid lines from each wall, by the name of the wall.
     """

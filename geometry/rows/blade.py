@@ -147,7 +147,7 @@ class BladeSurface:
         return np.asarray(turned - mean - away * self.pitch)
 
     def lines(self, u: Floats) -> CubicTable:
-        """Return splines of s, theta, h along the span at places `u` (m,); knots are the profiles' mean h."""
+        """Return splines of s, theta, h along the span at places `u` (m,), by the mean h of the profiles."""
         values = np.stack([profile.at(u) for profile in self.profiles])
         values[..., 1] += self._turns[:, None]
         return CubicTable(values, self.knots)
@@ -157,9 +157,9 @@ class BladeSurface:
         return self.crossings(self.lines(u.ravel()), h, len(h) if u.ndim == 1 else 1)
 
     def crossings(self, lines: CubicTable, h: Floats, levels: int = 1) -> Floats:
-        """Return s and theta (..., 2) at which `lines` along the span reach the heights `h` (...).
+        """Return s and theta (..., 2) at which splines `lines` along the span reach the heights `h` (...).
 
-        `h` is ordered by level: all lines on the first of the `levels`, then all on the second, and so on.
+        `h` has the heights of all lines on the first level, then on the second level, up to `levels`.
         """
         out = np.empty((*h.shape, 2))
         spline_crossings(

@@ -76,10 +76,9 @@ class Section:
 
     @property
     def frame(self) -> tuple[Floats, float]:
-        """Leading edge (2,) and chord of the given shape, which are moved and scaled to (0, 0) and 1.
+        """Leading edge (2,) and chord of the given shape, before it is moved to (0, 0) and scaled to 1.
 
-        Shapes that nearly have this position and size, as in most airfoil files, have (0, 0) and 1 and are
-        left as they are.
+        For an airfoil that nearly has this position and size, as in most files, they are (0, 0) and 1.
         """
         if isinstance(self.shape, Airfoil):
             nose, length = self.shape.leading_edge, self.shape.unit

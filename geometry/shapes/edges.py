@@ -26,7 +26,7 @@ _STRAIGHT = 0.5  # a curve is a wall, not a closed outline, if its ends are this
 
 
 class DrawnEdge(NamedTuple):
-    """A side: its points (n, 2), where the input has each of them, and the name of the side, if any."""
+    """A side: its points (n, 2), the place of each point in the input, and a name, which may be empty."""
 
     points: Floats
     places: Sequence[str]

@@ -41,8 +41,8 @@ def cells_of_wake(
     """Return the number of cells along the wake of a C grid with `ni` nodes along xi.
 
     If `nodes_wanted` is given, it is the number of nodes on the wake. Otherwise cells grow by 13 % from
-    `first` over `length`, and are 20 to 23 % of all cells along xi. Their number is then rounded to a
-    multiple of the first of `steps` that is at most a quarter of it. Raises InputError: too few nodes are
+    `first` over `length`, and are 20 to 23 % of all cells along xi. The number is rounded to a multiple of a
+    step: the first of `steps` that is at most a quarter of the number. Raises InputError: too few nodes are
     left for the wall.
     """
     if nodes_wanted is not None:
@@ -110,9 +110,9 @@ def growing(first: float, length: float, cells: int) -> Floats:
 
 
 def rise(behind: Floats, begin: float = _FROM) -> Floats:
-    """Return by how many chords (n,) first cells are higher at distances `behind` (n,) an edge, in chords.
+    """Return by how many chords (n,) first cells at a wake are higher than at the trailing edge.
 
-    They rise from about the distance `begin` on (`BEHIND_BASE` for a base).
+    `behind` (n,) are distances from the edge in chords. Most of the rise is beyond the distance `begin`.
     """
     return np.asarray(_RISE * behind**2 / ((behind + begin) * (1.0 + behind / _UP_TO)))
 

@@ -34,7 +34,7 @@ def first_cell(y_plus: float, reynolds: float, chord_fraction: float = 0.5) -> f
 
 
 def height_note(y_plus: str, reynolds: float | None, where: str, height: str) -> str:
-    """Return a note on how the `height` of first cells was computed from y+."""
+    """Return a note on how the first-cell `height` follows from y+; `where` names the reference length."""
     cells = f"needs first cells of height {height}; y+ at their centres is half of that"
     return f"y+ {y_plus} at Re {reynolds:g} {where} {cells}. Formula: {FORMULA} ({SOURCE})"
 

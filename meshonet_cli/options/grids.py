@@ -26,7 +26,7 @@ class GridOptions(RunOptions, GateOptions, FileOptions):
         self, method: str, settings: Mapping[str, Any], sampling: SamplingOptions, layers: LayerOptions,
         *blocks: object, **more: Any,
     ) -> "GridRequest":  # fmt: skip
-        """Return the request for grids from option groups and the fields `more`.
+        """Return the request for grids; `blocks` are option groups, and `more` other fields of the request.
 
         Raises InputError as `GridRequest`.
         """

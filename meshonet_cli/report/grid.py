@@ -125,7 +125,7 @@ class Report(Timed):
         return facts if math.isfinite(facts["expected_error"]) else {**facts, "expected_error": None}
 
     def line(self) -> str:
-        """Return the short report, which is printed in a batch: one line, then lines about changes."""
+        """Return the short report for batches: one line, then a line for each change of the input."""
         angle = self.quality["max_angle"].max
         head = (
             f"{self.item.label} -> {self.output}: {self._size(short=True)}, "

@@ -14,7 +14,7 @@ from meshonet_cli.report.delivered import Delivered, delivered
 
 
 def plot_grids(batch: Batch, picture: Picture) -> int:
-    """Draw each grid and return the exit code. Raises InputError: no picture; one for several grids."""
+    """Draw each grid and return the exit code. Raises InputError if the output is not a picture file."""
     kind = picture_format(batch.files.output, batch.files.to_format).name
     leave_out_docstrings()
     read = partial(read_grids, fmt=batch.files.from_format)

@@ -44,7 +44,7 @@ class StageLine:
     def text(self) -> str:
         """Return the text of the line: elapsed time, stage and progress.
 
-        In the first second, it is only `detail`. A stage without steps has `detail` in place of the progress.
+        In the first second, it is only the attribute `detail`. `detail` also replaces an unknown progress.
         """
         stage, now = self._stage, time.perf_counter()
         spent = now - self._begun

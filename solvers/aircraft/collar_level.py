@@ -91,7 +91,7 @@ def planned_collar(
 ) -> "tuple[CollarPlan, list[CollarLevel]]":
     """Return the plan for the collars (cells around sections) of a wing, and the collar around each hole.
 
-    `holes` are the sections of the wing from the root on. `corners` are the numbers of `corner_nodes`. Above
+    `holes` are the sections of the wing from the root on. `corners` is the result of `corner_nodes`. Above
     and below collars, there are as few cells as growth permits.
     """
     edge, nose = corners
@@ -222,7 +222,7 @@ class CollarLevel:
         return s[half + nose : 2 * half - edge + 1][::-1], s[edge : half - nose + 1]
 
     def collar(self) -> Floats:
-        """Return the nodes (n, rows + 1, 2) of the collar; for a fin, those from nose to trailing edge."""
+        """Return the nodes (n, rows + 1, 2) of the collar; for a fin, of half, from nose to trailing edge."""
         ring = self.ring / self.hole.scale
         if not self.hole.fin:
             return ring

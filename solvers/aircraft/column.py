@@ -131,19 +131,19 @@ class ColumnLevel:
         return replace(self, crown=zeta + 0.5 * (fin.levels[-1].hole.zeta - zeta))
 
     def beside_wing(self, wing: ColumnLevel, side: Side) -> ColumnLevel:
-        """Return this column of a fin; theta below the fin becomes nearly that of a wing's `side`."""
+        """Return this column of a fin; below the fin, theta is nearly that on the `side` of a wing column."""
         own, others = self.low, side[0][: len(self.low), 1]
         keel = self.zeta + _FOLLOWING * (wing.zeta - self.zeta)
         return replace(self, below=_followed(own, others), keel=keel)
 
     @property
     def zeta(self) -> float:
-        """Zeta of the first collar."""
+        """Coordinate zeta (`BodyMap`) of the first collar."""
         return self.levels[0].hole.zeta
 
     @property
     def low(self) -> Floats:
-        """Theta of the lines from the keel to the first collar."""
+        """Angles theta (`BodyMap`) of the grid lines between the keel and the first collar."""
         return self.levels[0].low_and_top[0] if self.below is None else self.below
 
     def above(self) -> tuple[float, tuple[float, float]]:

@@ -65,7 +65,7 @@ class Cascade:
     share: float = 1.0
 
     def ending(self, near: tuple[float, float], centre: complex) -> Self:
-        """Return the cascade with another `near` and `centre`; the layers stay the same."""
+        """Return the cascade with these fields `near` and `centre`; the layers stay the same."""
         return replace(self, near=near, centre=centre, marched=self.ring)
 
     @property

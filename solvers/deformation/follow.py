@@ -86,13 +86,13 @@ class Follow:
         return cls(table, sources, turning, slide, field, inner)
 
     def nodes_to(self, to: Floats) -> Floats:
-        """Return the new positions (n, d) of all nodes, if moved nodes go to their rows of `to` (n, d)."""
+        """Return the new positions (n, d) of all nodes if moved nodes are at their rows of `to` (n, d)."""
         there = self.boundary_to(to)
         there[self.inner] += self.field.blended(self._motions(self.field, there))
         return there
 
     def boundary_to(self, to: Floats) -> Floats:
-        """Return all nodes (n, d): moved ones at `to` (n, d), sliding ones displaced, others unchanged."""
+        """Return all nodes (n, d): moved nodes at `to` (n, d), sliding nodes displaced, others unchanged."""
         nodes = self.table.nodes
         there = np.where(self.sources.moved[:, None], to, nodes)
         if self.slide is not None:

@@ -77,7 +77,7 @@ class Measures:
 
     @property
     def whole(self) -> Floats:
-        """(k, 1) total increase of each measure."""
+        """(k, 1) increase of each measure from the first position to the last."""
         return self.values[:, -1:] - self.values[:, :1]
 
 

@@ -19,9 +19,9 @@ def layer_arcs(
     """Return the distances (k, cells + 1) of nodes from the wall, on lines of `length` (k,).
 
     The first `constant` cells have the height `first`, a number or (k,). The other heights never decrease.
-    Their logarithms are a quadratic function of the index, and the last height is about `last` (k,); if
-    `last` is infinite, the ratio of heights is constant. The logarithm of a ratio is at most log(`growth`),
-    or (1 + `steeper`) times that of the constant ratio if this is larger.
+    Their logarithms are a quadratic function of the index, and the last height is about `last` (k,). If
+    `last` is infinite, the ratio r of heights is constant. Otherwise the logarithm of each ratio is at most
+    the larger of log(`growth`) and (1 + `steeper`) log(r).
     """
     rows = cells - constant + 1  # the last constant cell and those that grow
     first = np.broadcast_to(np.asarray(first, dtype=np.float64), length.shape)

@@ -46,7 +46,7 @@ class LayerSettings:
 
     @classmethod
     def limited(cls, first: float, limit: float, **others: Any) -> Self:
-        """Return settings with ratios of at most `limit` in layers and beyond; `others` are other fields."""
+        """Return settings with growth ratios of at most `limit`, also outside layers; `others` are fields."""
         return cls(first, math.exp(NOMINAL * math.log(limit)), limit=limit, **others)
 
     def at(self, names: Collection[str]) -> Self:

@@ -180,7 +180,7 @@ class SectionPlane:
         return np.interp(shares, _SHARES, self._stations)
 
     def camber(self, shares: Floats) -> Floats:
-        """Return theta (n,) of the blade's mean line at `shares` (n,) from 0 to 1."""
+        """Return theta (n,) of the mean line at fractions `shares` (n,) of the way along the blade."""
         u = np.linspace(0.0, 0.5, _AROUND)
         middle = 0.5 * (self._opposite(u) + self._opposite(1.0 - u))
         part = np.maximum.accumulate(self.shares(pairs_of(middle)))

@@ -97,7 +97,7 @@ def _index(faces: SixFaces, side: Side, second: Side, at: int) -> list[int]:
 
 
 def closed_place(faces: SixFaces) -> Place | None:
-    """Return the indices i, j, k of an inner node for which there is no valid position; None without any.
+    """Return i, j, k of an inner node for which there is no valid position; None if there is no such node.
 
     Each face next to a node restricts it to four half-spaces. There is a valid position if all of these have
     a common point (kernels/volumes/near_faces.c).

@@ -28,7 +28,7 @@ def uniform_laws(counts: tuple[int, int, int]) -> Laws:
 
 
 def arc_laws(faces: SixFaces) -> Laws:
-    """Return laws that are relative arc lengths of the edges. Raises InputError: an edge without length."""
+    """Return relative arc lengths along edges as laws (`uniform_laws`). Raises InputError: repeated nodes."""
     xi, eta, zeta = (_arcs(faces.edges_along(axis)) for axis in range(3))
     return xi, eta, zeta
 

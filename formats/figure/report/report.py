@@ -15,7 +15,7 @@ SHOWN = 20  # largest number of grids with pictures in a report; of more grids, 
 
 
 class QualityPage:
-    """Quality page of grids; the `SHOWN` worst (failed, then those of largest angle) are shown in detail."""
+    """Quality page of grids; it has details of the `SHOWN` worst: failed grids, then the largest angles."""
 
     def __init__(self, gates: Sequence[Gate] = (), software: str = "meshonet") -> None:
         self._gates, self._software = tuple(gates), software

@@ -137,7 +137,7 @@ def nearer(chords: Chords, counts: Indices, multiple: int = 1) -> Indices:
 
 
 def check_sides(layout: Layout) -> None:
-    """Raise SolverError if periodic sides cannot have equal cell counts, or blocks reach past their ends."""
+    """Raise SolverError if periodic sides cannot have equal cell counts, or have wrong cells at an end."""
     mesh = layout.mesh
     if not mesh.domain.periodic:
         return

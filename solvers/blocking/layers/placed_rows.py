@@ -39,10 +39,10 @@ def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings)
 
 
 def with_layers(layout: Layout, rows: WallRows, settings: Sequence[LayerSettings]) -> Layout:
-    """Return a fine layout whose nodes are distributed into layers, along the lines across rows at walls.
+    """Return a fine layout whose `rows` of blocks at walls are layers: nodes move along lines across rows.
 
-    `settings` has one entry per row. First cells have exactly the given height. Heights grow to that of the
-    cells beyond the layers.
+    `settings` has one entry per row. First cells have exactly the given height. Heights grow up to the size
+    of the cells beyond the layers.
     """
     mesh = layout.mesh
     moved = np.zeros(len(mesh.nodes), dtype=bool)

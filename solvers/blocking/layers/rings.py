@@ -152,7 +152,7 @@ def march_ring(
 
 
 def room_between(rings: Mapping[int, Ring]) -> dict[int, Floats]:
-    """Return the permitted thickness (n,) at the columns of each ring that is too close to another, by loop.
+    """Return, by loop index, the permitted thickness (n,) at the columns of each ring too close to another.
 
     Rings may collide although walls do not face each other, because columns fan out around sharp edges.
     """

@@ -88,7 +88,7 @@ class RowSizes:
         return edge + SPREAD * away
 
     def rows(self, scale: float, settings: LayerSettings) -> int:
-        """Return the approximate number of layers at points whose first-cell height is that of `settings`."""
+        """Return the approximate number of layers at points with the first-cell height of `settings`."""
         on = self.on & (self.first == settings.first)
         return settings.rows(float(self.thickness(scale, settings)[on if on.any() else self.on].max()))
 
@@ -107,7 +107,7 @@ class RowSizes:
         return SizeMetric(points[on], normals[on], across[on], along[on], np.inf)
 
     def wake_metric(self, wake: Floats, scale: float, settings: LayerSettings) -> SizeMetric:
-        """Return the target sizes of cells next to a wake (k, 2), a line that begins at the sharp edge."""
+        """Return the target sizes of cells next to a `wake` (k, 2), a line that begins at the sharp edge."""
         tangent = np.gradient(wake, axis=0)
         normals = turned_left(tangent) / np.hypot(*tangent.T)[:, None]
         away = np.hypot(*(wake - wake[0]).T)

@@ -162,7 +162,7 @@ class WallLayers:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Functions along loops around layers whose steps between nodes should grow slowly, by loop index."""
+        """For each loop around layers, the functions whose steps from node to node should grow slowly."""
         measures = {k: ring.along for k, ring in self.rings.items()}
         if self.near is not None:
             ends = np.array([0.0, self.near.circle.length])

@@ -17,7 +17,7 @@ SYMMETRY, FREE = "symmetry", "free"
 
 
 def blocks_of(surface: Surface, lines: Floats) -> tuple[Block, ...]:
-    """Return a block for each patch of a surface; `lines` (3, n, levels) leave its n nodes."""
+    """Return a block for each patch of a surface; `lines` (3, n, levels) start at the surface's n nodes."""
     return tuple(Block(np.moveaxis(lines[:, lattice], 0, -1)) for lattice in surface.lattices)
 
 

@@ -31,7 +31,7 @@ class Seen:
         return self.own == 0.0 and bool((self.sign == 1.0).all())
 
     def mirrored(self, plane: Plane) -> "Seen":
-        """Return the mirror image of the neighbour in a plane."""
+        """Return the neighbour's mirror image, reflected in a plane."""
         turned = np.where(np.arange(3) == plane.axis, -1.0, 1.0)
         return Seen(
             self.base, self.own, turned * self.sign, turned * self.shift + (1.0 - turned) * plane.value

@@ -18,7 +18,7 @@ _FACING = 0.1  # largest net area that faces a plane of symmetry, as a fraction 
 
 
 class Symmetry(NamedTuple):
-    """Planes of symmetry, for each a mask `inside` (p, k) of the open edges in it, and notes."""
+    """Planes of symmetry, the mask `inside` (p, k) of the k open edges in each of p planes, and notes."""
 
     planes: tuple[Plane, ...]
     inside: Indices

@@ -97,9 +97,9 @@ def _evaluated(coarse: Tensor, sides: tuple[Tensor, ...], curved: Tensor | None 
 
 
 def inwards(planes: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-    """Return weights (.., m, n) for south, north, west and east; they are 1 on the side and decay inwards.
+    """Return weights (.., m, n) for each side: south, north, west and east. They decay from 1 to 0 inwards.
 
-    A displacement of the side moves inner nodes by these fractions. `planes` (.., 2, m, n) are the nodes.
+    If a side is displaced, inner nodes move by these fractions. `planes` (.., 2, m, n) are x and y of nodes.
     """
     south, north = _both(planes)
     west, east = (share.mT for share in _both(planes.mT))

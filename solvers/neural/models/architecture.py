@@ -62,7 +62,7 @@ class Architecture:
         return points
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return the coordinates (batch, p, 2) of p points, minus those of the base grid.
+        """Return the coordinates (batch, p, 2) of p points minus the coordinates of the base grid there.
 
         `xp` is numpy or torch, `w` has trained and fixed arrays by name, `inputs` comes from `encode`, and
         `places` from `seen`. For models that are defined only at the nodes of the training grids, `index`

@@ -46,7 +46,7 @@ def moved(base: Any, factor: Any, head: int, network: Moves, xp: Any) -> Any:
     """Return unrolled O grids `base` (batch, m + 1, n), which have equal steps, moved by the network.
 
     The last row of the result equals the first, without the period. `factor` (batch, 1, 1) scales the grids
-    to unit size. `head` is the index of the network's output, `network` that of `coarse_grids.answered`.
+    to unit size. `head` is the index of the network's output. For `network` see `coarse_grids.answered`.
     """
     strip = answered(base, (base * factor, 1.0 / factor), network, None, xp, around=True)
     if head == WINSLOW:

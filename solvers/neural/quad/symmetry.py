@@ -93,6 +93,6 @@ def lift(weight: Any, seen: Any) -> Any:
 
 
 def projection(weight: Any, elements: Any, xp: Any) -> Any:
-    """Return the symmetrised matrix (2 heads, 8 in) of the last layer from `weight` (heads, 2, in)."""
+    """Return the matrix (2 heads, 8 in) of the equivariant last layer from `weight` (heads, 2, in)."""
     back = weight[:, None, :, :, None] * xp.moveaxis(elements, 0, -1)[:, :, None]
     return back.sum(2).reshape(2 * len(weight), -1) / ORDER

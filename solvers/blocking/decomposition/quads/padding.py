@@ -34,7 +34,7 @@ def loops_to_pad(mesh: QuadMesh) -> list[int]:
 
 
 def spans_to_pad(mesh: QuadMesh, spans: Sequence[Span]) -> list[Span]:
-    """Return those of `spans` (parts of loops) on which a node inside has a wrong number of quads."""
+    """Return the `spans` (parts of loops) with a wrong number of quads at a node between their ends."""
     places, wrong = mesh.places, wrong_count(mesh)
     return [
         (loop, begin, end)
