@@ -70,7 +70,7 @@ def format_of(source: Source, fmt: str | None = None) -> Format:
 
 
 def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grids") -> Format:
-    """Return the format `fmt`, or that of the extension of `path_text`; for ``-`` it is HDF5.
+    """Return the format `fmt`, or the format for the extension of `path_text`; for ``-`` it is HDF5.
 
     Raises InputError if the extension is unknown, or if the format cannot store this `kind` of content.
     """

@@ -26,7 +26,7 @@ class NormalEquations:
     ----------
     size : number n of unknowns, or of pairs of unknowns.
     kinds : for each kind of residuals, the indices (k, m) of its unknowns; -1 marks a fixed value.
-    block : 2 if the indices are those of pairs of unknowns; derivatives are then (k, 2 m).
+    block : 2 if the indices count pairs of unknowns; derivatives are then (k, 2 m).
 
     >>> equations = NormalEquations(1, [np.array([[0], [0]])])
     >>> two = Residuals(np.array([[1.0], [1.0]]), np.ones(2), np.array([-1.0, -3.0]))

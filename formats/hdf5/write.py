@@ -47,7 +47,7 @@ class Writer:
         self._common: dict[str, Any] = {}  # what the provenances of all grids say
 
     def append(self, sample: Boundary | Grid) -> None:
-        """Add a boundary or grid. Raises InputError: its size or topology is not that of the first sample."""
+        """Add a boundary or grid. Raises InputError: size or topology differ from the first sample."""
         self._check_size(sample)
         arrays = _arrays_of(sample)
         if isinstance(sample, Grid):

@@ -15,7 +15,7 @@ Facts: TypeAlias = Mapping[str, Sequence[str]]  # texts by key
 def facts_of(grid: Grid, block: int = 0, number: int = 0) -> dict[str, list[str]]:
     """Return topology, name, patches and provenance of `grid` as lists of texts by key, for `grid_with`.
 
-    The texts are those of one `block`; only the first has connections and provenance. `number` is the number
+    The texts describe one `block`; only the first has connections and provenance. `number` is the number
     of the grid in the file. A patch is ``side start stop name``; keys for its kind and its range along the
     second direction are added if needed. An extruded grid has the texts of its planar grid.
     """

@@ -52,7 +52,7 @@ class Connection:
         return (self.block, self.side, self.range), (self.donor, self.donor_side, self.donor_range)
 
     def pairs(self, values: Sequence[NDArray[Any]]) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Return views, (n, 1) or (n, m, 1), of `values` at the nodes of the side and at those of the donor.
+        """Return views, (n, 1) or (n, m, 1), of `values` at the nodes of the side and at the donor's nodes.
 
         `values` has one array per block. Both views are in the node order of the side.
         """

@@ -115,8 +115,8 @@ class LimitedSpline:
 def sampled(lines: Floats, arc: Floats, at: Floats) -> Floats:
     """Return points (k, n, ...) at arc lengths `at` (k, n) on k piecewise cubic `lines` (k, m, ...).
 
-    `arc` (k, m) are the arc lengths of the m nodes; `at` is clipped to them. The tangent at a node is that of
-    a parabola through three nodes.
+    `arc` (k, m) are the arc lengths of the m nodes; `at` is clipped to them. The tangent at a node is the
+    tangent of a parabola through three nodes.
     """
     points = np.empty((*at.shape, lines.shape[2]))
     lines, arc, at = (np.ascontiguousarray(each) for each in (lines, arc, np.minimum(at, arc[:, -1:])))

@@ -34,7 +34,7 @@ class Places:
         return cls(none, np.zeros(count), np.zeros(count, dtype=np.intp), none.copy())
 
     def and_then(self, *others: Places) -> Places:
-        """Return the places of these nodes, followed by those of `others`."""
+        """Return the places of these nodes, followed by the places `others`."""
         every = (self, *others)
         return Places(*(np.concatenate([getattr(each, name) for each in every]) for name in vars(self)))
 

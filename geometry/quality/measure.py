@@ -61,7 +61,7 @@ def folded_cells(nodes: Floats) -> NDArray[np.int64]:
 
 
 def worst_cells(nodes: Floats, limit: int = 10) -> list[BadCell]:
-    """Return up to `limit` folded cells of `nodes` (see `count_folded`), those of least Jacobian first."""
+    """Return up to `limit` folded cells of `nodes` (see `count_folded`), the least Jacobian first."""
     form = form_of(nodes)
     if form == "volume":
         from meshonet.geometry.quality.volumes import worst_solids

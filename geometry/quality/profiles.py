@@ -38,8 +38,8 @@ class Check:
 class CheckResult:
     """The outcome of a check of a profile; `figure` is None if the grid has no such figure.
 
-    `profile` is the name of the profile. `centre`, (2,) or (3,), is that of the cell with the figure. `gated`
-    says that gates of the user replace the limits.
+    `profile` is the name of the profile. `centre` (2 or 3,) is the centre of the cell with the figure. If
+    `gated`, gates of the user replace the limits.
     """
 
     check: Check

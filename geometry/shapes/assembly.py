@@ -37,7 +37,7 @@ def assembled(
     """Return the domain that `shapes` form together; `names` has a name for each.
 
     Airfoils keep their smooth curves; other shapes become polygons. The outer boundary is the shape that is
-    around all others, or else a circle, whose radius is that of `sampling` in extents of all shapes. Raises
+    around all others, or else a circle; `sampling` has its radius in extents of all shapes. Raises
     InputError: shapes that are not closed curves; a far field that does not apply.
     """
     _check_airfoils(shapes, sampling)

@@ -15,7 +15,7 @@ from meshonet.geometry.shapes.outline import Outline
 def closed_curve(points: Floats, name: str, places: Sequence[str] = ()) -> Outline | Airfoil:
     """Return the airfoil or else the outline through `points` (n, 2), without repeated neighbours.
 
-    `places` say where the input has the points.
+    `places` has the place of each point in the input.
     """
     keep = np.concatenate([[True], (np.diff(points, axis=0) != 0).any(axis=1)])
     if ends_meet(points):

@@ -134,7 +134,7 @@ def c_boundary(
 
     The wall runs clockwise from its sharp trailing edge. The wake ends in the direction of the unit vector
     `axis` (2,). The far field in front is a half circle with `centre` and `radius`. `curve`, `name`, `chord`
-    and `notes` are those of `Boundary`. Raises InputError: the wake leaves the far field, or crosses the
+    and `notes` are fields of `Boundary`. Raises InputError: the wake leaves the far field, or crosses the
     wall.
     """
     south = np.concatenate([wake[:0:-1], wall[:-1], wake])

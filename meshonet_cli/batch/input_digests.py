@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def digests_of(entry: str | InputError | Draw) -> list[Input]:
     """Return an input and a digest of its name and content; for a dataset, an entry for each sample.
 
-    The digest of an unreadable input is that of its error.
+    The digest of an unreadable input is computed from its name and the error.
     """
     if isinstance(entry, InputError):
         return [Input(entry.source, digest_of(entry.source, str(entry)))]

@@ -15,7 +15,7 @@ def provenance(arguments: Sequence[str] | None = None) -> dict[str, str]:
     """Return version and command line of the program; the command line is without the name of the output.
 
     The same inputs and settings thus give the same bytes. `arguments` are without the program's name; None:
-    those of this process.
+    the arguments of this process.
 
     >>> provenance(["tfi", "a b.csv", "-o", "grid.vts", "--res", "80"])["command"]
     "meshonet tfi 'a b.csv' --res 80"

@@ -99,7 +99,7 @@ class SamplingOptions:
     )
 
     def placed(self, layers: "Mapping[str, Any] | None" = None) -> "Sampling":
-        """Return these options and those in `layers` as `Sampling`. Raises InputError: an invalid value."""
+        """Return these options and `layers` together as `Sampling`. Raises InputError: an invalid value."""
         from meshonet.geometry.spacing.sampling import Sampling
         from meshonet.solvers.pipeline.uses import counted
 

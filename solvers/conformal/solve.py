@@ -46,7 +46,7 @@ def solve(
     `polish` is the number of Picard iterations, ``auto`` or ``off``. `correction` returns a term for all
     boundaries that is added to their harmonic extensions; `model` is the name of the network that computes
     it. If a boundary has no conformal map, `substitute` makes its grid from the boundary and the reason. If
-    that returns None, or is not given, the elliptic solver makes the grid.
+    `substitute` is None or returns None, the elliptic solver makes the grid.
     """
     across()  # made once a process: no part of a grid's time
     begun = time.perf_counter()

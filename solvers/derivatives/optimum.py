@@ -32,7 +32,7 @@ class OptimumDerivative:
     ----------
     grid : a grid near the solution for its own boundary nodes, so that Newton's method converges.
     method : the equations that inner nodes satisfy, ``variational`` or ``winslow``.
-    weights : weights of the functional. None: those in the provenance of `grid`, or the defaults of
+    weights : weights of the functional. None: the weights in the provenance of `grid`, or the defaults of
         `solve_pde`.
 
     Raises InputError if the grid is an O grid, a volume, or has several blocks, or if the method is unknown.

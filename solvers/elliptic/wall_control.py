@@ -126,7 +126,7 @@ def first_heights(lines: Floats) -> Floats:
 def leaning(lines: Floats, tangent: Floats) -> Floats:
     """Return the cosine (n,) of the angle between a wall with unit `tangent` (n, 2) and `lines` (n, m, 2).
 
-    The direction of a line at the wall is that of the parabola through its first three nodes.
+    The direction of a line at the wall is the tangent of the parabola through its first three nodes.
     """
     a, b, c = lines[:, 0], lines[:, 1], lines[:, 2]
     first, second = np.hypot(*(b - a).T), np.hypot(*(c - b).T)

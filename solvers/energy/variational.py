@@ -53,7 +53,7 @@ def solve(
 ) -> Solution:  # fmt: skip
     """Minimise the functional of `meshonet.solvers.energy.functional` over the nodes inside `boundary`.
 
-    Nodes on the seam of an O grid move; those on the wake of a C grid are fixed. If no initial grid can be
+    Nodes on the seam of an O grid move; nodes on the wake of a C grid do not. If no initial grid can be
     untangled, the result has folded cells and a note.
 
     Parameters

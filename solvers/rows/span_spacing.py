@@ -56,7 +56,7 @@ def smooth_arcs(lengths: Floats, ends: tuple[Floats | float, Floats | float | No
     """Return arc lengths (n, cells + 1) of nodes on lines of `lengths` (n,), with evenly changing cells.
 
     `ends` are the first and the last cell length. The logarithm of the cell length is a quadratic function of
-    the index of the cell, or linear if the last of `ends` is None.
+    the index of the cell, or a linear one if the last cell length is None.
     """
     t = np.linspace(0.0, 1.0, cells)
     first, last = (None if end is None else np.broadcast_to(end, lengths.shape)[:, None] for end in ends)

@@ -30,7 +30,7 @@ class PlaneMeasures:
     score: float
 
     def no_worse(self, than: Self) -> bool:
-        """Return whether no measure is larger than that of `than`, apart from negligible differences."""
+        """Return whether no measure is larger than its value in `than`, apart from negligible differences."""
         if than.folded or self.folded:
             return self.folded < than.folded
         pairs = (self.angle, than.angle), (self.skew, than.skew), (self.mean, than.mean)

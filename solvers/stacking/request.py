@@ -16,7 +16,7 @@ DEFAULT_FAR_FIELD = 15.0  # chords
 class StackRequest(VolumeRequest):
     """Options of the surface or volume grid of a stack, checked on construction.
 
-    The unit of length is the longest chord; for a duct, it is that of the positions of sections.
+    The unit of length is the longest chord; for a duct, it is the unit of the positions of sections.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ class StackRequest(VolumeRequest):
 
     @property
     def turn(self) -> Revolution | None:
-        """The revolution that bends the z axis, if any."""
+        """The revolution that bends the z axis; None without `revolve`."""
         return revolution(self.revolve, None, self.axis)
 
     @property

@@ -77,8 +77,8 @@ class PaperOperator(Operator):
     def nodes(self, boundary: Boundary, *, paste: bool = True) -> tuple[Floats, float]:
         """Return nodes (ni, nj, 2), and the greatest distance of predicted boundary nodes from `boundary`.
 
-        With `paste`, the boundary nodes are those of `boundary`. Otherwise they are the predicted ones, and
-        only the two sides of the cut of an O grid are made equal.
+        With `paste`, nodes of `boundary` replace predicted boundary nodes. Otherwise, only the two sides of
+        the cut of an O grid are made equal.
         """
         answer = self.difference(boundary)
         if self.model.base == "harmonic":

@@ -43,8 +43,8 @@ def decode(coefficients: Any, basis: Any, scale: float, size: Any, xp: Any = np)
     """Return Fourier modes (batch, 2 MODES + 1, LEVELS) of Winslow's solution minus the harmonic extension.
 
     `coefficients` (batch, 2 Q, COLUMNS) are the outputs of the network, real parts first, then imaginary
-    parts. `basis` (Q, LEVELS - 2) has the basis functions at the inner Chebyshev points. `scale` is that of
-    `StripTargets`, `size` (batch,) that of `encode`.
+    parts. `basis` (Q, LEVELS - 2) has the basis functions at the inner Chebyshev points. `scale` is from
+    `StripTargets`, `size` (batch,) from `encode`.
     """
     q = len(basis)
     c = from_columns(coefficients[:, :q] + 1j * coefficients[:, q:], xp)
