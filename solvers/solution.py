@@ -50,7 +50,7 @@ class Solution:
     path : stages after the method itself, such as ``("repair",)``.
     seconds : wall-clock seconds by stage.
     notes : sentences for the user, for example about a restart.
-    boundary : boundary of the grid, if it is not the given one since a march ended at its own far field.
+    boundary : boundary of the grid, if a march ended at another far field than the given one.
     confidence : expected error of the grid of a neural operator.
     first_cells : prescribed first-cell heights by side, in the unit of the boundary.
     dimensions : dimensions of the blade row or aircraft, if the grid belongs to one.

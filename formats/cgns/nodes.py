@@ -62,7 +62,7 @@ def children(node: Node, label: str) -> Iterator[tuple[str, Node]]:
 
 
 def array(node: Node, ndim: int) -> NDArray[Any]:
-    """Return the array of a node. Raises InputError: there is none, or its type, rank or size is wrong."""
+    """Return the array of a node. Raises InputError: no array; an array of wrong type, rank or size."""
     place = printable(str(node.name))
     data = own(node, _DATA)
     if not isinstance(data, h5py.Dataset) or data.is_virtual or data.external:

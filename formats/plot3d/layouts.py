@@ -31,7 +31,7 @@ MOST_INTEGERS = 1 + 3 * _MOST_BLOCKS  # number of integers in the longest header
 
 @dataclass(frozen=True)
 class FileLayout:
-    """A layout: whether there is a block count, 2 or 3 axes, whether there is iblank, node counts."""
+    """Layout of a file: with or without block count and iblank, 2 or 3 coordinates, and node counts."""
 
     counted: bool
     axes: int

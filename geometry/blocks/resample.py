@@ -93,7 +93,7 @@ def _in_pieces(side: Floats, ends: tuple[int, ...], places: tuple[int, ...], clo
 def resample_patches(
     patches: tuple[Patch, ...], had: tuple[int, int], has: tuple[int, int], wake: int
 ) -> tuple[Patch, ...]:
-    """Return the patches of a boundary after its node counts (xi, eta) change from `had` to `has`."""
+    """Return the patches after node counts (xi, eta) change from `had` to `has`; `wake`: `Boundary.wake`."""
     along_xi, along_eta = _marks(had[0], has[0], wake), _marks(had[1], has[1], 0)
 
     def moved(patch: Patch) -> Patch:

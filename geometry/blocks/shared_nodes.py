@@ -66,7 +66,7 @@ def node_table(
 
 
 def joined_labels(count: int, pairs: Sequence[tuple[Indices, Indices]]) -> Indices:
-    """Return a label for each of `count` nodes, from 0 in the order in which they first appear.
+    """Return labels (count,) of nodes, numbered from 0 in the order of the nodes.
 
     Nodes that `pairs` join, directly or through other nodes, have the same label.
     """

@@ -24,11 +24,11 @@ _EDGES = np.arange(_STEPS + 1) / _STEPS  # ends of the parts
 class Curve:
     """A smooth curve with one cubic in each interval (`geometry.curves.spline`), bitwise through its points.
 
-    `points` (n, 2) are at least 2, or 3 for a closed curve, which may repeat its first. The tangent may jump
-    at `corners` (indices of points); None: they are detected (`geometry.polygon.corners`). Intervals in the
-    mask `straight` (intervals,) are straight lines. So are long intervals between rounded corners
-    (`geometry.polygon.straights`); the curves beside them are tangent to them. Raises InputError: too few
-    points; a point that is not finite or equals its neighbour; a corner out of range.
+    An open curve has at least 2 `points` (n, 2), a closed curve 3; its last point may repeat the first. The
+    tangent may jump at `corners` (indices of points); None detects them (`geometry.polygon.corners`).
+    Intervals in the mask `straight` (intervals,) are straight lines, and so are long intervals between
+    rounded corners (`geometry.polygon.straights`). Raises InputError: too few points; a point that is not
+    finite or equals its neighbour; a corner out of range.
 
     >>> square = Curve(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), closed=True)
     >>> square.length, square.corners.tolist()

@@ -48,7 +48,7 @@ def with_tied_sides(mesh: QuadMesh) -> QuadMesh:
 
 
 def matched_nodes(mesh: QuadMesh) -> Floats:
-    """Return the nodes (n, 2), where second sides of periodic pairs are bitwise the shifted first sides."""
+    """Return the nodes (n, 2); second sides of periodic pairs become bitwise the shifted first sides."""
     nodes, sides = mesh.nodes.copy(), sides_of(mesh)
     for _, first, _ in sides:
         nodes[first] = rounded(nodes[first], mesh.domain)

@@ -38,7 +38,7 @@ FIGURES: Mapping[str, str] = MappingProxyType({
 
 @dataclass(frozen=True)
 class Figure:
-    """A value and, if known, its node or cell `at` ([block,] i, j[, k]) and the grid line's direction."""
+    """A value; its node or cell `at` ([block,] i, j[, k]), and the direction `along` of its grid line."""
 
     value: float
     at: tuple[int, ...] | None = None

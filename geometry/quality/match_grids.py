@@ -24,7 +24,7 @@ class GridMatcher:
         self._passed: list[Grid] = []
 
     def match(self, name: str) -> Grid:
-        """Return the reference for the next grid, called `name`. Raises InputError: there is none for it."""
+        """Return the reference for the next grid, called `name`. Raises InputError if no reference fits."""
         if self._pairing == "auto":
             self._pairing = self._decided(name)
         if self._pairing == "name":

@@ -34,7 +34,7 @@ Gates: TypeAlias = str | Sequence[str | Gate]  # gates, or their texts as in `pa
 
 @dataclass(frozen=True)
 class Comparison:
-    """Distances of nodes from those of a reference grid, and ratios of largest angles to the reference's."""
+    """Distances of nodes from their places in a reference grid, and ratios of angles to the reference's."""
 
     difference: Difference
     folded: int  # number of folded cells of the reference

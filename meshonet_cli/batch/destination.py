@@ -80,7 +80,7 @@ class Destination:
             raise InputError("standard output is the terminal", "pipe it on, or write to a file", source="-o")
 
     def path(self, item: Item[Any]) -> str:
-        """Return the path for a result. Raises InputError if an earlier result has the same path."""
+        """Return the path for a member's result. Raises InputError: a path too long or already used."""
         if not self.each:
             return self.format.file_at(self.text)
         if item.index == NO_NUMBER and "index" in _fields(self.text):

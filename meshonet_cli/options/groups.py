@@ -93,9 +93,9 @@ def bad_value(text: str, what: str, remedy: str, parameter: str) -> Exception:
 
 
 def numbers(text: str | None, counts: tuple[int, ...], what: str, remedy: str, parameter: str) -> Any:
-    """Return the numbers in the text of an option, None for None; `counts` are the permitted numbers of them.
+    """Return the numbers in the text of an option, or None for None; `counts` lists how many are permitted.
 
-    Raises InputError for any other text; `what` says what it should be.
+    Raises InputError for any other text. The error says what the text should be (`what`), and a `remedy`.
 
     >>> numbers("0,57.5", (2,), "a vector", "use DX,DY", "pitch")
     (0.0, 57.5)

@@ -198,7 +198,7 @@ class Session:
             self._line = StageLine(self._draw, self._clear)
 
     def begin(self, name: str, count: int | None = None) -> None:
-        """Show the current member, and the number of members if known; end if a signal requested it."""
+        """Show the current member and the number `count` of members; stop the program after a signal."""
         check()
         self.members += 1
         if self._line and self.batch:

@@ -34,7 +34,7 @@ def hide_warnings() -> None:
 
 
 def check() -> None:
-    """Raise the exception of a signal again, if one came whose exception was lost."""
+    """If a signal came, raise its exception again, since the first one may have been lost."""
     if _asked:
         raise _asked[-1]
 

@@ -46,7 +46,7 @@ class LevelPlan:
 
     @property
     def patches(self) -> int:
-        """Number of patches of a level."""
+        """Number of patches of each level."""
         return sum(each.patches for each in self.columns) + len(self.between) + 4
 
     @property

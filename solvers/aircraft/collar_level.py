@@ -80,7 +80,7 @@ class CollarPlan:
 
 
 def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
-    """Return the numbers of `corner_nodes`, averaged over `holes`."""
+    """Return both node counts of `corner_nodes`, averaged over `holes`."""
     corners = [corner_nodes(hole.plane, hole.box, _CORNER) for hole in holes]
     edge, nose = (round(sum(each) / len(corners)) for each in zip(*corners, strict=True))
     return edge, nose

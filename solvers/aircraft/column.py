@@ -208,7 +208,7 @@ class ColumnLevel:
         return self.zeta if self.crown is None else self.crown
 
     def patches(self) -> list[Floats]:
-        """Return the patches (ni, nj, 3): collar, above it, below it, and collar of a fin above a wing."""
+        """Return the patches (ni, nj, 3): collar, patch above, patch below, collar of a fin above a wing."""
         below, above = self.levels[0].long_sides
         zeta = self.zeta
         patches = [_on(self.levels[0].collar(), zeta)]

@@ -40,8 +40,8 @@ def arcs_beyond(lengths: Floats, first: Floats, cells: int) -> Floats:
 def last_cells(points: Floats, section: Indices, even: Floats, first: float, growth: float) -> Floats:
     """Return the heights (p,) of cells at the level of the wing tip, on lines through `points` (p, 3).
 
-    On the lines with indices `section`, which reach the wing, heights are `first`. They increase with the
-    distance from the wing, to between `first` and `even` (p,).
+    On the lines with indices `section`, which reach the wing, heights are `first`. Elsewhere they increase
+    with the distance from the wing, and are between `first` and `even` (p,).
     """
     wing = points[section]
     away = np.array([norms(wing - point).min() for point in points])

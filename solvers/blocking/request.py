@@ -27,11 +27,12 @@ class BlockRequest(FirstCell):
 
     Parameters
     ----------
-    cells : number of cells. Without it, `cell_size` and `res`, it is `CELLS`, or `LAYERED_CELLS` with layers.
+    cells : number of cells. If `cell_size` and `res` are not given either, the default is `CELLS`, or
+        `LAYERED_CELLS` with layers.
     res : number of cells along the longest extent of the domain.
     length : reference length of the Reynolds number; None is the extent of the bodies.
     walls : names of the parts of loops with layers; if empty, `Domain.layered_loops` have layers.
-    inlet, outlet : lengths of the passage before and behind the blade, in its axial chords; None is 1.
+    inlet, outlet : lengths of the passage upstream and downstream of a blade, in axial chords; None is 1.
     refine : how often all cells are halved. `cells`, `cell_size` and `res` apply to the coarsest grid of the
         family; `first_cell` and `growth` apply to the finest grid, which is the result.
 

@@ -24,7 +24,7 @@ def columns(modes: Complexes) -> Floats:
     has `TAPS` terms::
 
         sum_k c_k exp(i k theta) = sum_q w(theta - theta_q) f_q,      f_q = sum_k c_k / v_k exp(i k theta_q)
-        w(x) = exp(b (sqrt(1 - x^2) - 1)),  |x| < 1,  x in half windows
+        w(x) = exp(b (sqrt(1 - x^2) - 1)),  |x| < 1,  x in units of half the window
         v_k = sum_q w(theta_q) exp(-i k theta_q)
 
     The error is about exp(-pi TAPS sqrt(1/2)) = 3e-14 of the largest mode. Real parts precede imaginary

@@ -110,7 +110,7 @@ class Follow:
         return affine(old[at], there[at], turns)
 
     def along_sides(self, move: Floats, there: Floats) -> Floats:
-        """Return `move` (n, d), changed in place: without components normal to sides that are flat."""
+        """Return `move` (n, d); components normal to sides that are and stay flat are removed in place."""
         for piece in self.sources.sliding:
             normal = normal_of(self.table, piece, there)
             if normal is not None:

@@ -43,7 +43,7 @@ def tables_of(
 ) -> HexTables:
     """Return the tables of a mesh for compiled code; `moves` (n,) is the mask of free nodes.
 
-    `targets` are for edges, `lengths` for cells. If `turned`, blocks have their longest direction last.
+    `lengths` are the target lengths of cells. If `turned`, the longest direction of each block is the last.
     """
     parts = [
         _part(wider, np.append(moves, False), wanted, sizes, turned)

@@ -54,7 +54,7 @@ def optimise(
     tolerance : the iteration ends after three consecutive relative gains below a hundredth of this.
     turning : angle in radians by which a wall may turn along one edge without penalty.
     weights : w and β of the functional if there are `targets` or if growth is penalised.
-    growth : weight of a penalty for growth ratios of edges, and logarithm of the greatest ratio without it.
+    growth : weight of a penalty for growth ratios of edges; logarithm of the greatest ratio without penalty.
     """
     problem = problem_of(mesh, held, aspects, targets, turning)
     if problem is None:

@@ -144,8 +144,8 @@ def evened_loops(
 ) -> Layout:
     """Return the layout with nodes moved along loops; displacements decay across the adjacent blocks.
 
-    `measures` has, by loop index, the functions whose steps are evened. Corners are fixed. `limit` and `most`
-    are as in `evened_places`. If cells would fold, the given layout is returned.
+    `measures` has, by loop index, functions whose steps from node to node should grow slowly. Corners are
+    fixed. `limit` and `most` are as in `evened_places`. If cells would fold, `layout` itself is returned.
     """
     mesh = layout.mesh
     nodes, arcs = mesh.nodes.copy(), mesh.places.arc.copy()

@@ -38,7 +38,7 @@ class Fewer(Wrapper):
     """Solves large grids by `method` on fewer nodes; if cells are then folded, again on twice as many."""
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the solution of a boundary; with an initial grid `start`, it is solved on all nodes."""
+        """Return the solution of a boundary; all nodes are used if it is small or `start` is given."""
         above, n = FEWER_NODES.get(self.name, (0, 0))
         if not n or start is not None or max(boundary.ni, boundary.nj) <= above:
             return self.inner(boundary, start)

@@ -64,7 +64,7 @@ class Wrapper(OneByOne):
         return self.method.name
 
     def inner(self, boundary: Boundary, initial: Grid | None = None) -> Solution:
-        """Return the other method's solution of one boundary."""
+        """Return the solution of one boundary by the other `method`."""
         return solved(self.method, boundary, initial)
 
 

@@ -69,7 +69,7 @@ class OneBlock(Request):
 
     @property
     def sides(self) -> dict[str, float]:
-        """First-cell heights that single sides have of their own, by side."""
+        """First-cell heights that are prescribed for single sides, by side."""
         heights = self.spacing_south, self.spacing_east, self.spacing_north, self.spacing_west
         if heights == (None,) * 4:
             return {}

@@ -104,7 +104,7 @@ class SectionPlane:
         return slope * (self.map.length - float(self.edges[1, 0]))
 
     def ending(self, near: tuple[float, float], thickest: float) -> Self:
-        """Return the section with straight rows of cells from `near` pitches before and behind the blade on.
+        """Return the section with straight rows of cells beyond `near` pitches upstream and downstream.
 
         The conformal map has its centre midway between the places u = `thickest` and u = 1 - `thickest`.
         """

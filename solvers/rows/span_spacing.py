@@ -36,7 +36,7 @@ def spaced_cells(length: float, ends: Ends, growth: float, largest: float, least
 
 
 def two_sided(lengths: Floats, ends: Ends, growth: float, cells: int) -> Floats:
-    """Return arc lengths (n, cells + 1) on lines of `lengths` (n,), for cells that grow from both `ends`."""
+    """Return arc lengths (n, cells + 1) on lines of `lengths` (n,); cells grow inwards from sizes `ends`."""
     from_ends = _from_ends(ends, growth, cells)
     least, most = lengths / cells, lengths
     largest = least
@@ -122,7 +122,7 @@ class Spacing:
 
     @classmethod
     def of(cls, lengths: tuple[float, float], ends: Ends, growth: float, cells: int) -> Self:
-        """Return the spacing of `cells` cells that grow from both `ends`."""
+        """Return the spacing for the range `lengths` of line lengths; cells grow inwards from `ends`."""
         known = np.linspace(*lengths, _LENGTHS if lengths[1] > lengths[0] * (1.0 + 1e-9) else 1)
         return cls(lengths, (two_sided(known, ends, growth, cells) / known[:, None]).T)
 
@@ -147,7 +147,7 @@ class LineArcs:
 
     @classmethod
     def through(cls, samples: Floats) -> Self:
-        """Return n lines through positions (k, n, 3) at parameters ``key_heights(k)``."""
+        """Return the relation for n lines, from points (k, n, 3) at the parameters ``key_heights(k)``."""
         speed = norms(slopes_at_keys(samples))
         arcs = integrals_at_keys(speed)
         lengths, wanted = arcs[-1], key_heights(len(samples))[:, None]

@@ -80,7 +80,7 @@ class StackedRow:
 
     @property
     def bounds(self) -> list[tuple[int, int]]:
-        """First and last level of each zone."""
+        """First and last level of each zone of the span (blade and gaps)."""
         return list(zip(self.levels[:-1], self.levels[1:], strict=True))
 
     @property

@@ -31,7 +31,7 @@ class VolumeMeasures:
 
     @property
     def bound(self) -> float:
-        """Smallest scaled Jacobian that another mesh may have and be no worse."""
+        """Smallest scaled Jacobian with which another mesh still counts as no worse than this one."""
         return min(_PART * self.least, _GOOD)
 
 

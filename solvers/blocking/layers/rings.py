@@ -37,7 +37,7 @@ class Ring:
     ----------
     wall : the loop.
     arcs : (n,) ascending arc lengths on the wall at which the columns start. If the wall has corners, the
-        first column starts at one.
+        first column starts at a corner.
     levels : (n, m, 2) nodes of each column, from the wall to the front (the outer edge of the layers).
     front : loop along the last level. It has one point per column, and a corner with two cells where the wall
         has a corner.

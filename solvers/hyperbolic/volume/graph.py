@@ -18,7 +18,7 @@ _WIDTH, _FALL = 4, 0.35  # rings of nodes around irregular ones that are smoothe
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """A neighbour, real or ghost, of a node: its position is own * x(node) + sign * x(base) + shift."""
+    """Position of a neighbour, real or ghost, of a node: own * x(node) + sign * x(node `base`) + shift."""
 
     base: int
     own: float = 0.0
@@ -73,7 +73,7 @@ def march_graph(
     ----------
     planes, in_plane : planes of symmetry, and for each a mask (p, k) of the open edges in it.
     hollow : (n,) distances from concave edges (`meshonet.geometry.surface.hollows`).
-    splay : excess distance of ghosts, beyond free edges, relative to that of nodes (`Seen.opposite`).
+    splay : ghosts beyond free edges are 1 + `splay` times as far away as the opposite node (`Seen.opposite`).
     boost : additional smoothing at irregular nodes.
     """
     n = len(surface.nodes)

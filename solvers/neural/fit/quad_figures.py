@@ -21,8 +21,8 @@ Grids = NDArray[np.complexfloating[Any, Any]]
 def held_out_figures(answers: Grids, base: Grids, winslow: Grids, variational: Grids) -> dict[str, Any]:
     """Return error measures of a network's grids `answers` (m, heads, n, n) against target grids (m, n, n).
 
-    Angles are judged by the greatest corner angle of a grid (``max``), and by the mean over cells of each
-    cell's greatest (``mean``). A gain is the network's improvement over Winslow's grids, divided by the
+    Angles are judged by the greatest corner angle of a grid (``max``), and by the mean of the greatest angles
+    of its cells (``mean``). A gain is the network's improvement over Winslow's grids, divided by the
     improvement of the variational grids. Domains whose Winslow grid has folded cells are left out.
     """
     solved, best = angles(winslow), angles(variational)

@@ -33,7 +33,7 @@ HELD_OUT = 0
 
 
 class VolumeTask(Task):
-    """Training of a network for each of `volumes`; `points` are drawn per step, inside and on the faces."""
+    """Training of a network per volume; `points` are the numbers of points per step, inside and on faces."""
 
     parts = ("winslow", "faces", "weights")
 

@@ -23,7 +23,7 @@ STILL = 1e-4  # moves at which a descent stops sooner, as `meshonet.solvers.ener
 def polished(
     boundaries: Sequence[Boundary], network: Network, topology: Topology, head: int, steps: int
 ) -> tuple[Floats, list[int]]:
-    """Return polished nodes (batch, 2, ni, nj), and the number of steps taken for each grid.
+    """Return the network's grids (batch, 2, ni, nj) after iterations, and the number of steps for each grid.
 
     `boundaries` have equal node counts. `steps` limits the steps of Newton's method, descent or multigrid.
     """

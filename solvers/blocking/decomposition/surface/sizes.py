@@ -63,8 +63,8 @@ def wall_sizes(domain: Domain, count: int, finer: tuple[Floats, Floats] | None =
 
     They are ``h = min(h0, piece / 4, gap / 3.5, .45 radius)``, but at least ``h0 / 25`` or 1/400 of the loop,
     whichever is less. Here h0 is `usual_size`, piece is the length of the wall between two corners, radius is
-    that of curvature, and gap is the distance to the nearest wall within 53 degrees of the normal. The other
-    wall at a wide corner is no gap. Further sizes (m,) are prescribed at points (m, 2) by `finer`. The
+    the radius of curvature, and gap is the distance to the nearest wall within 53 degrees of the normal; the
+    other wall at a wide corner does not count. `finer` prescribes sizes (m,) at further points (m, 2). The
     gradient of the sizes is at most 0.35.
     """
     largest = usual_size(domain.area, count)

@@ -91,7 +91,7 @@ def part_of(domain: Domain, mirrors: Sequence[Mirror]) -> DomainPart:
 def sector_of(domain: Domain, mirrors: Sequence[Mirror], start: int) -> DomainPart:
     """Return the sector between mirrors `start` and `start` + 2; `mirrors` are sorted by angle.
 
-    Raises SolverError if a mirror cuts a sharp corner, or if the centre is outside the domain.
+    Raises SolverError if a mirror cuts a sharp corner, or if the mirrors meet outside the domain.
     """
     count = len(mirrors)
     first, middle, last = (mirrors[k % count] for k in range(start, start + 3))
