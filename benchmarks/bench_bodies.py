@@ -214,8 +214,6 @@ TAIL = """
 - **Quality**: all 44 grids of `hole-o --polish 5` are valid, with a gain of 93 to 96 %.
 - **Time**: `hole-o --polish 5` takes about three times as long as Winslow's solver, and a third of the time
   of the variational solver.
-- **Spacing**: in the grids of `hole-o` and of the variational solver, grid lines cluster where the body is
-  close to the far field.
 - **Limits**: around bodies that are not compact, such as clips, crescents and angle sections, the grids of
   `hole-o` often have folded cells without polish. With `--polish 5` the grids around 25 such bodies and thin
   plates were all valid.

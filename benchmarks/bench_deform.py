@@ -51,7 +51,7 @@ Methods:
   Bijl, AIAA 2009-3996).
 - *IDW, rotations*: weighting of displacements and rotations, with the exponents -3 and -5 (Luke, Collins,
   Blades, J. Comput. Phys. 231 (2012) 586-601).
-- *deform*: the same, but with the exponents -2 and -4, and with distant boundary nodes combined into groups.
+- *deform*: as *IDW, rotations*, but with the exponents -2 and -4 and groups of distant boundary nodes.
   If cells are folded, `deform` repeats the deformation in several steps (here for {steps} deformations).
 
 Columns:

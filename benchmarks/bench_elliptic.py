@@ -52,7 +52,7 @@ OTHERS = """
 
 The table gives seconds for an elliptic grid, or for the most similar grid that the program makes. The times
 of the MeshONet paper (arXiv 2501.11937) and of Construct2D, a grid generator for airfoils, were measured on
-other machines. An empty cell means that no time is known.
+other machines. Empty cells: no time is known.
 
 | program | 100x100 | 200x200 | 250x100 | 400x400 | 800x800 | 1600x1600 | 3200x3200 |
 | --- | --- | --- | --- | --- | --- | --- | --- |
@@ -160,7 +160,7 @@ def conformal(n: int) -> Floats:
 def order() -> Iterator[str]:
     """Yield errors against the conformal map, and the fitted slope."""
     yield "\n## Order of convergence\n"
-    yield "The error is the largest distance of a node from the exact solution, the map z = exp ζ.\n"
+    yield "The exact grid is a rectangle mapped by z = exp ζ. The error is the largest distance from it.\n"
     yield "| nodes | error |\n| --- | --- |"
     counts, errors = np.array([17, 33, 65, 129, 257]), []
     for n in counts.tolist():

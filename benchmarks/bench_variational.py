@@ -231,7 +231,7 @@ grids](../theory/variational.md).
   disc cut off.
 - *--coarse N*: the solver runs on N x N nodes, and the solution is interpolated to all nodes.
 - *network `quad-general`*: a [network](quad-operator.md) that predicts the variational grid.
-- *infer*: `infer` without options, which solves Winslow's equations after a conformal map.
+- *infer*: `infer` without options; around airfoils, Winslow's equations after a conformal map.
 - *NACA 0012-sharp*: NACA 0012 with a closed trailing edge.
 - *folded cells*: number before repair.
 - *maximum*, *99th percentile*, *mean*: over the cells of the grid; for random domains, averages of these

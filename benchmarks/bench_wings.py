@@ -43,8 +43,8 @@ ROWS: tuple[tuple[str, Kind, dict[str, float]], ...] = (
     ("blades", "blade", {"first_cell": 1e-5}),
 )
 NOTE = """
-The default grids take more CPU time than the fine grids: without `--layers`, `stack` repeats the marching
-until the cells grow by a factor of at most 1.2.
+The default grids take more CPU time than the fine grids: their marching is repeated until the
+cells grow by a factor of at most 1.2.
 """
 HEAD = """# Volumes from sections: wings, blades, pipes
 
