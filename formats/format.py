@@ -40,7 +40,7 @@ class Format:
     many : whether one file can contain several grids or boundaries.
     one_size : whether all samples of a file must have the same node counts and topology.
     beside : whether other files are written next to the file, so that it cannot be written to a stream.
-    fills_folder : whether a grid fills a folder, for which its file stands.
+    fills_folder : whether a grid is a folder of files; the file that users name stands for the folder.
     choices : groups of options that exclude each other; a user may append options to the name.
     reads_options : whether `read_grids` has a parameter ``options``, as `write_grids` has.
     suffix_options : for an extension, the option that it implies when a file is written.

@@ -150,7 +150,7 @@ class Inputs:
 
 
 def is_dataset(entry: str) -> bool:
-    """Return whether the name of an input is that of a dataset or of samples of a dataset.
+    """Return whether an input is, by its name, a dataset or samples of a dataset.
 
     >>> is_dataset("wings.h5#0:3"), is_dataset("wing.dat")
     (True, False)

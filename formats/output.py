@@ -28,10 +28,10 @@ def whole_file(destination: str, *, make_folder: bool = False, beside: bool = Fa
     """Return a context with the path of a temporary file, which becomes `destination` if the block succeeds.
 
     The temporary file is in the folder of the destination and is renamed in one step. If the destination is
-    ``-`` (standard output), a device or a pipe, its content is copied at the end. After any exception it is
-    removed and the destination is unchanged. `make_folder` makes a missing folder. `beside` means that other
-    files are written next to it. Raises InputError if the destination is a folder, or with `beside` a stream,
-    if its folder is missing or not writable, or if the disk is full.
+    ``-`` (standard output), a device or a pipe, the content is copied at the end. After any exception the
+    temporary file is removed and the destination is unchanged. `make_folder` makes a missing folder. `beside`
+    means that other files are written next to the destination, which must not be a stream then. Raises
+    InputError if the destination is a folder, its folder missing or not writable, or the disk full.
 
     Examples
     --------

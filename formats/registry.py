@@ -237,7 +237,7 @@ def _known() -> str:
 def source_of(text: str) -> Source:
     """Return the source (file or standard input) with the given name.
 
-    Raises InputError as `open_source`, and if the name is that of a designation or an unreadable format.
+    Raises InputError if it cannot be opened, or if meshonet can only write files of its format.
     """
     try:
         return open_source(text)

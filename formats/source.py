@@ -67,7 +67,7 @@ class Source:
         return self.data if self.data is not None else self.head(-1)
 
     def bytes_below(self, most: int, kind: str) -> bytes:
-        """Return all bytes. Raises InputError: more than `most`; its message calls the file `kind`."""
+        """Return all bytes. Raises InputError, with the `kind` of file, if there are more than `most`."""
         if self.size > most:
             problem = f"{self.size >> 20} MB are too much for {kind}"
             raise InputError(problem, f"give a file below {most >> 20} MB", source=self.name)

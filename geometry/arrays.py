@@ -110,7 +110,7 @@ def wrapped(parts: Floats, least: float = -0.5) -> Floats:
 def shortest_ways(ways: Floats, length: float | Floats) -> Floats:
     """Return signed distances (...) along closed curves, each by the shorter way around its curve.
 
-    `ways` (...) are signed distances by any way around. `length` is that of the curves.
+    `ways` (...) are signed distances by any way around. `length` is the length of the curves.
 
     >>> shortest_ways(np.array([3.0, -3.0, 1.0]), 4.0).tolist()
     [-1.0, 1.0, 1.0]

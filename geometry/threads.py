@@ -50,8 +50,7 @@ def in_threads(work: Callable[[Item], Made], items: Sequence[Item]) -> list[Made
     """Return the results of `work` for each of `items`, computed concurrently if threads are free.
 
     This saves time if an item takes milliseconds, mostly in kernels or in loops of NumPy. `work` may itself
-    use its share of the threads. Threads without an item help the others. Items are started in order, so the
-    longest should come first.
+    use its share of the threads. Items are started in order, so the longest should come first.
     """
     inside = _helpers.get()
     if len(items) < 2 or not (inside or thread_count() > 1):

@@ -67,7 +67,7 @@ def stage(name: str, seconds: Timings) -> Iterator[None]:
 def filling(name: str, unit: str, marks: Floats) -> Iterator[None]:
     """Return a context for a kernel that fills `marks` (steps,), one value per step.
 
-    They are NaN at first; the watchers are told how many values are filled.
+    The values are NaN at first; listeners are told how many of them are filled.
     """
     if not (watchers := _watchers.get()):
         yield

@@ -160,7 +160,7 @@ def outline(ax: Axes, grid: Grid) -> None:
 
 
 def body(grid: Grid) -> Floats:
-    """Return the nodes (n, 2) of the south patch named ``wall``, else those of the whole south side."""
+    """Return the nodes (n, 2) of the south patch named ``wall``, or without it of the whole south side."""
     for part in grid.patches:
         if part.side == "south" and part.name == "wall":
             return grid.nodes[part.start : part.stop + 1, 0]

@@ -31,14 +31,14 @@ class Values:
         return [Values(row, f"{key}[{k}]") for k, row in enumerate(rows)]
 
     def row(self, key: str) -> Values:
-        """Return an object."""
+        """Return the object at `key`."""
         row = self.data.get(key)
         if not isinstance(row, dict):
             raise self.error(f"{key} is no object")
         return Values(row, key)
 
     def text(self, key: str) -> str:
-        """Return a text."""
+        """Return the text at `key`."""
         value = self.data.get(key)
         if not isinstance(value, str):
             raise self.error(f"{key} is no text")

@@ -97,9 +97,9 @@ def patch_of(face: Face, lattices: Sequence[IndexedNodes]) -> Patch | None:
 
 
 def connection_of(pair: Pair, lattices: Sequence[IndexedNodes]) -> Connection | None:
-    """Return the connection of a pair, without a motion; None and errors are those of `part_of`.
+    """Return the connection of a pair, without a motion; None if a rectangle is not on a single side.
 
-    Also raises InputError if the indices of the two rectangles do not correspond.
+    Raises InputError as `part_of`, and if the indices of the two rectangles do not correspond.
     """
     here, there = part_of(pair.own, lattices), part_of(pair.donor, lattices)
     if here is None or there is None:

@@ -17,7 +17,7 @@ _ORDERS = {"<": "little", ">": "big"}  # names of byte orders
 
 
 def candidates(data: memoryview, wanted: Options = frozenset()) -> list[Candidate]:
-    """Return all possible layouts of a binary file whose length is that of `data`.
+    """Return all layouts that a binary file of the length of `data` can have.
 
     Coordinates plane by plane are considered if `wanted`, or if each Fortran record has one plane. Raises
     InputError if no layout fits.

@@ -52,9 +52,9 @@ class SurfaceWing:
 
     @classmethod
     def ending(cls, strips: tuple[Floats, ...], name: str = "wing") -> Self:
-        """Return the wing of `strips`, up to where the tip becomes thin or to the last station.
+        """Return the wing of `strips`, up to the last station; a tip that becomes thin is cut off.
 
-        Raises InputError: a wing without thickness.
+        Raises InputError if the wing has no thickness.
         """
         strips = tuple(map(_rising, strips))
         end = min(float(strip[-1, :, 2].min()) for strip in strips)

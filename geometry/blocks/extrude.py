@@ -60,9 +60,8 @@ def thickened(
     """Return a planar grid as volumes with the given `nodes`, and with its patches and connections.
 
     `nodes` has an array (ni, nj, nk, 3) of finite nodes for each block. Patches and connections extend over
-    all planes of nodes. `ends` has the name and kind of the patch on the first plane, then on the last. If it
-    is None, the two planes are connected: by the periodic `motion`, or as coinciding planes if that is None
-    too.
+    all planes of nodes. `ends` has the name and kind of the patch on the first plane, then on the last. If
+    `ends` is None, the two planes are connected by the periodic `motion`; without `motion`, they coincide.
 
     Raises InputError: blocks that are not planar; nodes that differ where blocks are connected.
     """

@@ -58,8 +58,8 @@ class Revolution:
     degrees : float
         Angle from the first plane to the last, up to 360.
     planes : int, optional
-        Number of planes of nodes, one more than the number of cells. If None: 2 planes for an angle of up to
-        10 degrees, otherwise as many as make cells of at most 4 degrees.
+        Number of planes of nodes, at least 2. If None: 2 planes (one cell) for an angle of up to 10 degrees,
+        otherwise enough planes for cells of at most 4 degrees.
     axis : AxisLine, optional
         Axis in the plane of the grid; by default the x axis.
 
@@ -180,9 +180,9 @@ def frame_of(points: Floats, axis: AxisLine) -> AxisFrame:
 def revolved(grid: Grid, turn: Revolution, ends: tuple[End, End] | None = None) -> Grid:
     """Return a planar grid revolved about the axis of `turn`.
 
-    The first and last plane of a wedge become the patches ``wedge1`` and ``wedge2``. Those of a larger angle
-    become patches with the names and kinds `ends`, or are periodic without `ends`. Those of a full revolution
-    coincide and are connected.
+    The first and last plane of a wedge become the patches ``wedge1`` and ``wedge2``. For a larger angle, the
+    two planes become patches with the names and kinds `ends`, or are periodic without `ends`. For a full
+    revolution, they coincide and are connected.
 
     Raises InputError: blocks that are not planar; periodic connections; nodes on both sides of the axis, or
     all on the axis.

@@ -33,7 +33,7 @@ def monotone_cubic(x: Floats, values: Floats, at: Floats, *, linear: bool = Fals
 
 
 def piece_at(x: Floats, at: Floats, dimension: int) -> tuple[Indices, Floats, Floats]:
-    """Return, for each of `at` (m,): index of its interval of `x` (n,), fraction in it, length of it.
+    """Return in which interval of `x` (n,) each of `at` (m,) is, at what fraction, and the interval's length.
 
     Fraction and length have the shape (m, 1, ...), with `dimension` axes.
     """

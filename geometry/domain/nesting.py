@@ -11,8 +11,8 @@ from meshonet.geometry.polygon.area import contains, polygon_area
 def nested(polygons: Sequence[Floats]) -> list[tuple[int, list[int]]]:
     """Return, for each outer polygon, its index and the indices of its holes, in the order of `polygons`.
 
-    A polygon inside a hole is an outer polygon. A polygon counts as inside another if at least two of three
-    of its points are.
+    A polygon inside a hole is an outer polygon. Three points of a polygon are tested; if at least two are
+    inside another polygon, so is the polygon.
 
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     >>> nested([square + 1.0, 4.0 * square, square + 2.5])

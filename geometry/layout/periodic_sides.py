@@ -17,7 +17,7 @@ Sides = tuple[Periodic, Indices, Indices]
 
 
 def sides_of(mesh: QuadMesh) -> list[Sides]:
-    """Return each periodic pair of sides, with the nodes of its first side and those of its second."""
+    """Return each periodic pair of sides, with the nodes of its first and of its second side."""
     after = following(mesh)
     return [
         (each, _chain(mesh, after, each.first), _chain(mesh, after, each.second)[::-1])
@@ -26,7 +26,7 @@ def sides_of(mesh: QuadMesh) -> list[Sides]:
 
 
 def following(mesh: QuadMesh) -> Indices:
-    """Return, for each node (n,), the next one along the boundary (domain on the left); -1 for inner ones."""
+    """Return the next node (n,) along the boundary (domain on the left) for each node; -1 for inner nodes."""
     cell, side = np.nonzero(mesh.on_wall[mesh.edge_of])
     after = np.full(len(mesh.nodes), -1, dtype=np.intp)
     after[mesh.quads[cell, side]] = mesh.quads[cell, (side + 1) % 4]

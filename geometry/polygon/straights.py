@@ -38,8 +38,8 @@ def find_kinks(points: Floats, *, few: int = FEW) -> Indices:
 def straight_intervals(points: Floats, corners: Indices) -> Bools:
     """Return which intervals (n,) of a closed polygon `points` (n, 2) are straight lines.
 
-    A straight interval is at least `LONG` times as long as a neighbouring interval that is not beyond one of
-    the `corners` (indices of points). At both ends of a straight interval, the polygon turns by at most
+    A straight interval is at least `LONG` times as long as one of its neighbours; intervals with one of the
+    `corners` (indices of points) between them are no neighbours. At both ends, the polygon turns by at most
     `EXPLAINED` times the angle between tangent and chord of the circle through the next three points.
     """
     turn, joined = turning(points, closed=True), np.ones(len(points), dtype=bool)

@@ -31,7 +31,7 @@ class BlockCounts:
 class BlockFigures(BlockCounts):
     """Counts, angles and grid lines of a multi-block grid; `nodes` is the number of distinct nodes.
 
-    `deviation` is that of corner angles from 90 degrees, in degrees; at a corner of a volume, it is the
+    `deviation` is the deviation of corner angles from 90 degrees, in degrees; at a corner of a volume, the
     largest of three. Its mean is over all corners. Its percentile is over all cells, each with its largest
     deviation.
     """

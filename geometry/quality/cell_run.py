@@ -21,7 +21,7 @@ class CellRun(NamedTuple):
     """Result of one pass over the cells of a block.
 
     `table` (metrics, 3) has the minimum, mean and maximum of each metric. `where` (metrics, 2, 2) has the
-    cell i, j of the minimum and that of the maximum. `values` (n, ni-1, nj-1) has n chosen metrics of all
+    cell i, j of the minimum and of the maximum. `values` (n, ni-1, nj-1) has n chosen metrics of all
     cells.
     """
 

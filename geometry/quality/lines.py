@@ -25,11 +25,11 @@ from meshonet.kernels import _native
 
 @dataclass(frozen=True)
 class Lines:
-    """Largest growth and bend (turning angle in degrees) of grid lines, and their nodes; None without nodes.
+    """Largest growth and bend (turning angle in degrees) of grid lines, and where; None without nodes.
 
-    `growth` is along each direction of the blocks. Fields that end in ``_inside`` are of nodes inside blocks,
-    those in ``_across`` of nodes on sides between blocks. `leaving` is the growth along all lines that leave
-    walls, through all blocks. `by_wall` is the same for each wall.
+    `growth` is along each direction of the blocks. Fields that end in ``_inside`` are at nodes inside blocks,
+    fields that end in ``_across`` at nodes on sides between blocks. `leaving` is the growth along all lines
+    that leave walls, through all blocks; `by_wall` gives it for each wall.
     """
 
     growth: Growth

@@ -72,7 +72,7 @@ ALL_NAMES = tuple(dict.fromkeys((*NAMES, *SOLID_NAMES, *map(_NAME, METRICS))))
 
 
 def metrics_of(grid: Grid) -> tuple[Metric, ...]:
-    """Return the metrics of the cells of `grid`: those of quadrilaterals, or those of volumes."""
+    """Return the metrics for the cells of `grid`: metrics of quadrilaterals or of hexahedra."""
     return (*(SOLID_METRICS if grid.form == "volume" else QUAD_METRICS), *METRICS)
 
 

@@ -112,7 +112,7 @@ class QualityReport:
         return f"<QualityReport: {', '.join(parts)}>"
 
     def under(self, gates: Gates) -> QualityReport:
-        """Return the report with the limits of `gates` in place of those of its profile."""
+        """Return the report with the limits in `gates` in place of the limits in its profile."""
         return replace(self, profile=self.profile.under(_parsed(gates))) if self.profile else self
 
     def broken(self, gates: Gates = ()) -> list[str]:

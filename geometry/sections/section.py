@@ -41,8 +41,8 @@ class Section:
         Angle in degrees by which the plane is rotated about the line along x through the leading edge, with
         the sign of a dihedral. ``panel``: by the dihedral of the adjacent panels (see `Stack.cants`).
     nodes : int, optional
-        Number of nodes along the span from the previous section to this one, with the nodes of both. None: as
-        the stack decides.
+        Number of nodes along the span from the previous section to this one, both ends included. None: the
+        stack decides.
 
     Raises
     ------
@@ -102,9 +102,9 @@ class Fade(NamedTuple):
 
 
 def placed(unit: Floats, placement: Floats, fade: Fade | None = None) -> Floats:
-    """Return nodes (..., n, 2) of sections: `unit`, those at unit chord, moved to `placement` (..., 6).
+    """Return nodes (..., n, 2) of sections from nodes `unit` at unit chord.
 
-    The six values are those of `Section.placement`.
+    `placement` (..., 6) has the six values of `Section.placement`.
     """
     chord, twist, x, y, about_x, about_y = (placement[..., k, None] for k in range(6))
     if fade is not None:

@@ -41,7 +41,7 @@ def polygon_shape(
     rings: Sequence[PolygonRing], name: str = "", notes: tuple[str, ...] = (),
     periodic: Sequence[tuple[str, str]] = (),
 ) -> DomainShape:  # fmt: skip
-    """Return the domain inside the first of the `rings` and outside the others.
+    """Return the domain inside the first ring of `rings` and outside all other rings.
 
     `periodic` gives the names of each pair of periodic sides. Raises InputError: as `ring_loop` and
     `with_periodic_sides`.

@@ -27,8 +27,8 @@ def stretch_arcs(
     """Return arc lengths (cells + 1,) of nodes on a closed curve from `begin` to `end`, or once around.
 
     Unless `forward`, nodes run against the curve. ``tanh`` has end cells of a quarter of the mean length. A
-    spacing that needs more data than the curve is replaced by equal steps. Nodes at corners have indices that
-    are multiples of `step`, if there are enough of these.
+    spacing that needs more data than the curve is replaced by equal steps. The indices of nodes at corners
+    are multiples of `step` if there are enough nodes.
     """
     sign = 1.0 if forward else -1.0
     length = (sign * (end - begin)) % curve.length or curve.length
@@ -54,8 +54,8 @@ def stretch_arcs(
 def on_corners(distance: Floats, corners: Floats, fixed: tuple[int, ...] = (), step: int = 1) -> Floats:
     """Return the distances (n,) of nodes, changed so that a node is at each of the `corners` (m,).
 
-    The nearest node moves there. If there are enough of them, only each `step`-th node can move. The first,
-    the last and the `fixed` nodes stay. Raises InputError: more corners than nodes.
+    The node nearest to a corner moves there. Only each `step`-th node moves, unless these are too few. The
+    first, the last and the `fixed` nodes stay. Raises InputError: more corners than nodes.
     """
     if corners.size == 0:
         return distance

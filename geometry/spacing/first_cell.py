@@ -42,7 +42,7 @@ class FirstCell:
 
     @property
     def by_wall(self) -> tuple[str, ...]:
-        """Names of walls that have heights of their own; empty if all walls have the same height."""
+        """Names of the walls whose heights are set by name; empty if one height is set for all walls."""
         setting = self.first_cell if self.y_plus is None else self.y_plus
         return tuple(setting) if isinstance(setting, Mapping) else ()
 

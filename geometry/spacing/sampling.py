@@ -28,10 +28,10 @@ class Sampling:
     Parameters
     ----------
     ni, nj : int, optional
-        Numbers of nodes along xi (around the body) and along eta (away from it). None: those of the shape, or
+        Numbers of nodes along xi (around the body) and along eta (away from it). None: as in the shape, or
         `DEFAULT_NI` and `DEFAULT_NJ` for a curve.
     nk : int, optional
-        Number of nodes of a volume along zeta. None: that of the given volume. Planar grids have None.
+        Number of nodes of a volume along zeta. None: as in the given volume. Planar grids have None.
     topology : {'auto', 'quad', 'o', 'c'}, optional
         Topology of the grid; ``auto``: the topology that suits the shape.
     spacing : str, optional
@@ -52,9 +52,9 @@ class Sampling:
     wake : float, optional
         Length of the wake of a C grid in chords; None: the far-field distance.
     wake_nodes : int, optional
-        Number of nodes along the wake, with the trailing edge; None: follows from the cell length there.
+        Number of nodes along the wake, including the trailing edge; None: follows from the cell length there.
     base_nodes : int, optional
-        Number of nodes on a blunt base, with both corners, odd for an O grid; None: follows from its width.
+        Number of nodes on a blunt base, including both corners; odd for an O grid. None: as its width needs.
     base : float, optional
         Thickness in chords to which thinner trailing edges of airfoils are opened.
     smooth : float, optional

@@ -47,7 +47,7 @@ class Destination:
     text : file name, or a pattern with ``{stem}``, ``{index}`` or ``{name}`` for several files.
     fmt : name of the format; None: determined by the extension.
     kind : kind of the results.
-    put : function that writes to a path; None: that of the format.
+    put : function that writes to a path; None: the writer of the format.
     part_size : number of inputs in a part of a dataset; None: derived from `nodes`.
     nodes : approximate number of nodes of a result.
     space : kind of three-dimensional blocks of the results; None: they are planar.

@@ -101,7 +101,7 @@ class InputOptions(PrintOptions):
     ) -> "Inputs":
         """Return the inputs that `words` name: shapes, with `grids` grids, or files with these `suffixes`.
 
-        Raises InputError if the shard is invalid; other errors are those of `Inputs`.
+        Raises InputError if the shard is invalid, and as `Inputs`.
         """
         from meshonet.formats.inputs import Inputs
 

@@ -64,11 +64,10 @@ def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
 
 
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
-    """Return how many nodes of a section `root` are between its edges and the lines to the corners of `box`.
+    """Return on which nodes of a section `root` the lines to the corners of the rectangle `box` begin.
 
-    The first number is counted from the middle of the trailing edge to either side, the second from the nose.
-    Both are at least `fewest`. With them, cells on both sides of a corner have similar lengths, and normals
-    of the root point to the corners.
+    The first number counts nodes from the middle of the trailing edge to either side, the second from the
+    nose. With these numbers, at least `fewest`, cells on both sides of a corner have similar lengths.
     """
     normals, half = _normals(root), (len(root) - 1) // 2
     tried = np.arange(fewest, half // 3 + 1)
@@ -138,7 +137,7 @@ def collar(
 ) -> tuple[Floats, float]:
     """Return nodes (n, rows + 1, 2) between the closed loops `root` and `outer` (n, 2), and a sine.
 
-    It is the sine of the smallest angle between lines across and lines around, before nodes are distributed.
+    The sine belongs to the smallest angle between lines across and lines around, before nodes are spaced.
 
     Parameters
     ----------

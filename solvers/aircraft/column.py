@@ -55,7 +55,7 @@ class ColumnPlan:
 
     @property
     def bands(self) -> int:
-        """Number of cells above and below the collars (cells around wings), from keel to crown."""
+        """Total number of cells below and above the collars (cells around wings), along theta."""
         return self.collars[0].low + (0 if self.fin_alone else self.collars[0].top)
 
     @property
@@ -65,7 +65,7 @@ class ColumnPlan:
 
     @property
     def beside(self) -> tuple[int, int]:
-        """Numbers of cells on the front and on the back of its collars."""
+        """Numbers of cells on the front and on the back of the collars (cells around wings)."""
         shares = [1 if self.fin and each is self.collars[-1] else 2 for each in self.collars]
         before = sum(n * each.nose for n, each in zip(shares, self.collars, strict=True))
         return before, sum(n * each.edge for n, each in zip(shares, self.collars, strict=True))

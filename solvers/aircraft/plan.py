@@ -50,7 +50,7 @@ class AircraftPlan:
 
     @classmethod
     def of(cls, aircraft: Aircraft, request: AircraftRequest, space: BodyMap, around: int) -> Self:
-        """Return the plan with `around` nodes around each wing; growth is by default the first of `GROWTHS`.
+        """Return the plan with `around` nodes around each wing; without a requested growth, `GROWTHS[0]`.
 
         Raises InputError if a wing does not begin inside the body or does not leave it, if wings are too
         close to each other, or if a root is too close to keel or crown.

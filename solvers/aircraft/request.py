@@ -12,7 +12,7 @@ _OTHERS = ("layers", "revolve", "axis", "copies")  # options of stacks that do n
 
 @dataclass(frozen=True)
 class AircraftRequest(StackRequest):
-    """Options of the grid of an aircraft: those of `StackRequest`; give `cells` or `around`, not both."""
+    """Options of `StackRequest` for the grid of an aircraft; give `cells` or `around`, not both."""
 
     what: ClassVar[str] = "an aircraft"
     fewest_cells: ClassVar[int] = 20_000

@@ -128,7 +128,7 @@ def _cut_off_of_holes(fine: Layout) -> str:
 
 
 def find_layout(shape: DomainShape, request: BlockRequest) -> Layout:
-    """Return the blocks of a domain, with the requested number of cells or, by default, that of `decompose`.
+    """Return the blocks of a domain; if no number of cells is requested, `decompose` determines it.
 
     Raises InputError as `make_blocks`; SolverError if the decomposition fails.
     """

@@ -137,7 +137,7 @@ class Cascade:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Functions along the layers' outer edge whose steps should grow slowly, by loop index; or {}."""
+        """By loop index, functions of the place on the layers' outer edge whose steps should grow slowly."""
         return {BLADE: self.ring.along} if self.layers.limit else {}
 
     def factors_at(self, arcs: Floats) -> Floats:

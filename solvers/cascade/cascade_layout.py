@@ -184,9 +184,10 @@ def attached_cells(
     cascade: Cascade, chords: Chords, counts: Indices, metric: SizeMetric, layers: int | None = None,
     longest: Mapping[int, float] | None = None,
 ) -> int:  # fmt: skip
-    """Return the number of cells in the layers and in the rows to both ends, if chords have `counts` cells.
+    """Return the number of cells in the layers and in the rows to inlet and outlet.
 
-    `layers` replaces the number of layers. `longest` are lower bounds of the lengths of rows, by loop index.
+    `counts` are the cells of the chords. `layers` replaces the number of layers. The rows are at least as
+    long as `longest`, by loop index.
     """
     along = chords.along_loops(counts).tolist()
     total = along[BLADE] * (cascade.rows_of_layers if layers is None else layers)

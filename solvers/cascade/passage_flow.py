@@ -85,7 +85,7 @@ class PassageFlow:
         return float(before.real), float(behind.real)
 
     def inside(self, places: Complexes) -> Complexes:
-        """Return ζ - G (m,) at points σ = `places` (m,), by Cauchy's integral of its values on the blade.
+        """Return ζ - G (m,) at positions σ = `places` (m,) in the strip, by Cauchy's integral over the blade.
 
         The integral is a trapezoidal sum in the variable tanh σ/2, divided by the same sum for the constant 1
         (Helsing, Ojala, J. Comput. Phys. 227 (2008) 2899-2921).

@@ -42,6 +42,6 @@ def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...
 
 
 def fading(eta: Floats, first: float) -> Floats:
-    """Return which fraction of a shift of phi applies at `eta`: 1 if eta equals `first`, 0 at walls."""
+    """Return factors that fade a shift of nodes: 1 where `eta` equals `first`, 0 at wall and far field."""
     cells = eta / first
     return np.asarray(cells * exp((1.0 - cells) / CELLS) * (1.0 - eta) / (1.0 - first))

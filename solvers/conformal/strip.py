@@ -90,7 +90,7 @@ def modes(F: Any, xp: Any = np) -> Any:
 
 
 def wavenumbers(like: Any = None, xp: Any = np) -> Any:
-    """Return k in the order of `modes`, as an array of the same kind as `like`."""
+    """Return the wavenumbers 0, 1 .. MODES, -MODES .. -1 as an array of the same kind as `like`."""
     k = np.concatenate([np.arange(MODES + 1.0), np.arange(-MODES, 0.0)])
     return k if like is None else array_like(k, like, xp)
 

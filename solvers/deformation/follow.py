@@ -140,7 +140,7 @@ def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
 
 
 def sliding_notes(follow: Follow, to: Floats) -> tuple[str, ...]:
-    """Return notes on fixed sides that touch moved walls; moved nodes go to their rows of `to` (n, d)."""
+    """Return notes on fixed sides that touch moved walls; `to` (n, d) are the new positions of all nodes."""
     notes, table = [], follow.table
     for piece in follow.sources.sliding:
         if (to[piece.numbers] == table.nodes[piece.numbers]).all():

@@ -86,10 +86,10 @@ def _frames(corners: Floats) -> Floats:
 
 
 def affine(places: Floats, moved: Floats, turns: Floats) -> Floats:
-    """Return a (d) and B (d²), stacked as (d + d², n): each node displaces a point x by a + B x.
+    """Return a (d numbers) and B (d² numbers) for each node, which moves a point x by a + B x: (d + d², n).
 
-    `places` and `moved` (n, d) are the old and new positions of the nodes, `turns` (n, d, d) is R - 1 for
-    their rotations R.
+    `places` and `moved` (n, d) are the old and new positions of the nodes, `turns` (n, d, d) their rotation
+    matrices minus the identity.
     """
     shift = moved - places - product(turns, places[:, :, None])[:, :, 0]
     return np.ascontiguousarray(np.concatenate([shift.T, turns.reshape(len(places), -1).T]))

@@ -27,8 +27,8 @@ class ControlledEdge:
     + κ). Such a mode of q changes the logarithm of the height by q/(b + κ). A correction is therefore the
     error, with each Fourier mode multiplied by b + κ.
 
-    `across` is the number of nodes to the opposite edge. `periodic` means a closed edge. `angle` is that
-    between edge and lines, in degrees. `height` is that of first cells, 0 if it is not controlled.
+    `across` is the number of nodes to the opposite edge. `periodic` means a closed edge. `angle` is the
+    angle between edge and lines in degrees. `height` is the first-cell height, 0 if not controlled.
     """
 
     def __init__(

@@ -63,7 +63,7 @@ def relief_of(wall: Floats) -> Floats:
 def aspect_of(nodes: Floats, periodic: bool = False) -> float:
     """Return the aspect ratio a of the functional: the ratio of steps along eta to steps along xi.
 
-    It compares the root mean square steps on west and east with those on south and north. If `periodic`, west
+    It compares root mean square steps on west and east with steps on south and north. If `periodic`, west
     and east are no boundaries, and a is the ratio that minimises the harmonic term.
     """
     if periodic:

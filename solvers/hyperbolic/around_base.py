@@ -41,7 +41,7 @@ def around_base(
 ) -> Solution:
     """Return the grid of two blocks around `lines`: a body with a blunt base, and its wake.
 
-    `first` is the first-cell height in the unit of the lines. The other parameters are those of `hyperbolic`.
+    `first` is the first-cell height in the unit of the lines. The other parameters are as in `hyperbolic`.
     Raises InputError as `hyperbolic`, and SolverError if the march diverges.
     """
     check_layers(first / lines.chord, growth)

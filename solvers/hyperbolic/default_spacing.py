@@ -50,8 +50,8 @@ def _height(smallest: float, away: float, nj: int) -> float:
 def march_by_default(boundary: Boundary) -> Solution | None:
     """Return the C grid marched from `boundary`; None if another method suits better.
 
-    That is so if the far-field nodes are given, if cells would grow by more than `STEEPEST`, or if cells
-    fold.
+    Another method suits better if the far-field nodes are given, if cells would grow by more than `STEEPEST`,
+    or if cells fold.
     """
     if boundary.wall is None:
         return None

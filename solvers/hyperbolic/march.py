@@ -70,7 +70,7 @@ def hyperbolic(
 ) -> Solution:  # fmt: skip
     """Return an O or C grid marched from the wall of `boundary`; the wall nodes are bitwise kept.
 
-    The solution has its own far field, where the march ended. The ends of C rows move along the sides west
+    The far field of the solution is the last level of the march. The ends of C rows move along the sides west
     and east, which are assumed to be straight. If cells fold in all attempts, the returned grid is folded.
 
     Parameters
@@ -99,7 +99,7 @@ def hyperbolic(
 
 
 def marched(front: Front, rows: int, layers: MarchLayers) -> Floats:
-    """Return the nodes (ni, nj, 2) of a march with `rows` rows of cells, or as many as `layers` require.
+    """Return the nodes (ni, nj, 2) of a march with `rows` rows of cells, or more if `layers` is free.
 
     Raises InputError if rows are too few, and SolverError if no attempt gives finite nodes.
     """

@@ -42,7 +42,7 @@ class GrowthLimit:
 
     @classmethod
     def at(cls, growth: Floats, limit: float | Floats, change: float = CHANGE) -> Self:
-        """Return the penalty term for initial logarithms `growth` (..., k), which, clipped, become ρ0."""
+        """Return the penalty term whose ρ0 are the initial logarithms `growth` (..., k), clipped to ±L."""
         return cls(limit, np.clip(growth, -limit, limit), change)
 
     def values(self, growth: Floats, weight: float) -> Floats:

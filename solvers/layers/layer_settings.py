@@ -110,7 +110,7 @@ def layer_lines(
 ) -> Floats:
     """Return the nodes (k, rows + 1, 2) of layers along columns (k, m, 2), from the wall to `ends` (k, 2).
 
-    `inner` (k,) are the heights of the cells just beyond the layers, `first` (k,) those of the first cells.
+    `inner` (k,) are the heights of the cells next to the layers, `first` (k,) the first-cell heights.
     """
     columns = columns + arc_parts(columns)[..., None] * (ends - columns[:, -1])[:, None]
 

@@ -35,7 +35,7 @@ class Auto(OneByOne):
 
 @dataclass(frozen=True)
 class Fewer(Wrapper):
-    """Solves large grids by `method` on fewer nodes; if cells are then folded, again on twice as many."""
+    """Solves large grids by `method` on fewer nodes. If cells are folded, it tries twice as many nodes."""
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
         """Return the solution of a boundary; all nodes are used if it is small or `start` is given."""

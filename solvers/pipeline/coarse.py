@@ -31,7 +31,7 @@ def solve_coarse(
 ) -> Solution:
     """Solve by `solve` on at most n x n nodes; return the grid interpolated to the nodes of `boundary`.
 
-    Residual and cycles of the solution are those on the few nodes. With `smooth`, nodes near kinks of the
+    The returned residual and cycles belong to the coarse grid. With `smooth`, nodes near kinks of the
     boundary are relaxed by Winslow's equations. The relaxed nodes are kept if the method is ``winslow``, if
     the interpolated grid is folded, or if angles improve. Raises InputError if `n` is below 9.
     """
@@ -68,8 +68,8 @@ def solve_refined(
 ) -> Solution:
     """Solve on every 2^levels-th node of `boundary`, then repeatedly on twice as many, up to all nodes.
 
-    `solve` has a parameter ``initial``: `initial` on the coarsest level, on others the interpolated grid of
-    the level before. Raises InputError if the counts cannot be halved so often.
+    `solve` has a parameter ``initial``. On the coarsest level it gets `initial`, on each finer level the
+    interpolated grid of the previous level. Raises InputError if the counts cannot be halved so often.
     """
     solution = solve(coarser_boundary(boundary, 2**levels), initial=initial)
     seconds, counts = dict(solution.seconds), [_counts(solution)]

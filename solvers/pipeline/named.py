@@ -60,7 +60,7 @@ class Wrapper(OneByOne):
 
     @property
     def name(self) -> str:
-        """Name of the other method."""
+        """Name of the method that is called."""
         return self.method.name
 
     def inner(self, boundary: Boundary, initial: Grid | None = None) -> Solution:

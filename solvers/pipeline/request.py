@@ -168,7 +168,7 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
     settings : dict, optional
         Settings of the method by name.
     first_cell : float or mapping, optional
-        Height of the first cells at the walls in `walls`. The unit is the chord around a body, otherwise that
+        Height of the first cells at the walls in `walls`. The unit is the chord around a body, else the unit
         of the domain. In four-sided and multi-block domains, a mapping from names to heights selects walls.
     y_plus : float or mapping, optional
         First-cell height as y+ of a turbulent flat plate, instead of `first_cell`.
@@ -231,7 +231,7 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
     periodic : tuple of tuple of str, optional
         Pairs of sides of a domain, by name, that are periodic.
     count : mapping, optional
-        Numbers of cells along sides of a domain by name; with `refine`, those of the coarsest grid.
+        Numbers of cells along sides of a domain by name; with `refine`, numbers in the coarsest grid.
     layers : int, optional
         Number of nodes along each grid line of a volume marched from a surface, including the wall node.
     symmetry : {'x', 'y', 'z', 'none'}, optional

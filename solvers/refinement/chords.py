@@ -141,7 +141,7 @@ class Chords:
         return along
 
     def cut_off(self) -> Floats:
-        """Return for each edge the area (e,) between the wall and straight sides of cells; 0 inside."""
+        """Return the area (e,) between each straight edge and the curved wall there; 0 for inner edges."""
         lost = np.zeros(len(self.edges))
         part = np.linspace(0.0, 1.0, 5)
         for edge, loop, arcs in self._walls():

@@ -51,7 +51,7 @@ class SizeMetric:
 
     @classmethod
     def joined(cls, metrics: "Sequence[SizeMetric]") -> "SizeMetric":
-        """Return the metric that requires what any of `metrics` requires."""
+        """Return a metric that satisfies all `metrics`: at each place, the smallest of their sizes."""
         starts = np.cumsum([0, *(len(each.points) for each in metrics[:-1])])
         points, normals, across, along = (
             np.concatenate([getattr(each, name) for each in metrics])

@@ -54,7 +54,7 @@ class ChannelLines:
         return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
     def weights(self, pairs: Floats) -> Floats:
-        """Return the squares (p,) of the field `slant` for lines between pairs (p, 2) of places u."""
+        """Return weights (p,) of lines between pairs (p, 2) of places u: the square of `slant` there."""
         return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
 
     def aside(self, pairs: Floats) -> Floats:

@@ -76,8 +76,8 @@ def gap_blocks(
 ) -> GapBlocks:
     """Return the blocks of a gap, with nodes between its ends.
 
-    `around` (k,) are the indices of the blade's nodes in a section, clockwise. `outline` (levels, k, 3) are
-    their s, theta, h (see `Channel`) on each level along the span.
+    `around` (k,) are the indices of the blade's nodes in a section, clockwise. `outline` (levels, k, 3) has
+    s, theta, h (see `Channel`) of these nodes on each level along the span.
     """
     fill = ends.fill
     blade = row.channel.in_space(outline[:, fill.outline])

@@ -86,7 +86,7 @@ class KeySection:
 
 @dataclass(frozen=True, eq=False)
 class Beginning:
-    """The middle section of a row, and the data from which the others are made."""
+    """The middle section of a row, and the data from which all other key sections are made."""
 
     plan: SectionPlan  # data that all sections share
     columns: Sequence[LayerColumns | None]  # columns of the layers of each section; None for the middle one
@@ -102,7 +102,7 @@ def planned(
 
     Parameters
     ----------
-    coarse : `coarse_section` of the middle section, if known.
+    coarse : result of `coarse_section` for the middle section; None: it is computed.
     longest : greatest lengths of the rows to inlet and outlet, by loop index.
     wake : as in `SectionPlan`.
     gaps : whether the blade ends in a gap at the hub, and at the casing.
@@ -148,7 +148,7 @@ class NextSections:
         self._problem = _problem(plan, section.plane, section.layout.mesh)
 
     def of(self, before: KeySection, plane: SectionPlane, columns: LayerColumns | None = None) -> KeySection:
-        """Return the section in `plane`, made from the section `before`; `columns` are its layers, if known.
+        """Return the section in `plane`, made from the section `before`; None as `columns` computes layers.
 
         Raises NoValidGridError if cells stay folded.
         """

@@ -47,7 +47,7 @@ class SectionPlane:
 
     @classmethod
     def of(cls, row: Row, height: float, first: float, growth: float, share: float = 1.0) -> Self:
-        """Return the section at a `height`; first cells are `first` high, `share` is a field of `Cascade`."""
+        """Return the section at a `height`, with first cells of height `first`; `share` scales the layers."""
         u, lines = _lines(row.surface)
         s, theta = row.surface.crossings(lines, np.full(len(u), height)).T
         to = row.channel.meridional(height)
@@ -118,7 +118,7 @@ class SectionPlane:
         return self.places[list(self.cascade.blade.corners)]
 
     def from_corners(self, arcs: Floats) -> Floats:
-        """Return distances (n,) on the blade from arc lengths (n,) to the nearest corner, or infinity."""
+        """Return the distances (n,) from arc lengths (n,) to the nearest corner; infinite without corners."""
         off = wrapped((arcs - self.wall_arcs(self.corners)[:, None]) / self._walls[-1])
         return np.asarray(self._walls[-1] * np.abs(off).min(axis=0, initial=np.inf))
 

@@ -21,7 +21,7 @@ def key_heights(count: int) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class SpanLines:
-    """Polynomials: n functions of the height, 0 to 1, with Chebyshev coefficients (k, n, ...)."""
+    """n polynomials in the height, 0 to 1, each with k Chebyshev coefficients: an array (k, n, ...)."""
 
     coefficients: Floats
 

@@ -40,12 +40,13 @@ class SpanPlaces:
     def of(
         cls, planes: Sequence[SectionPlane], places: Floats, pairs: Indices, gaps: tuple[bool, bool]
     ) -> "SpanPlaces":
-        """Return places near `places` (k,) of the middle section, with a node at each corner.
+        """Return places (positions of nodes around the blade) with a node at each corner.
 
         Parameters
         ----------
         planes : all sections.
-        pairs : (p, 2) nodes on the upper and on the lower side that are joined by lines across the channel.
+        places : (k,) places in the middle section, which the result resembles.
+        pairs : (p, 2) nodes on the upper and on the lower side, joined by lines across the channel.
         gaps : whether there is a gap at the hub, and at the casing.
         """
         corners, half = planes[0].corners, len(planes) // 2

@@ -43,7 +43,7 @@ class Cap:
         return (nodes - 1) * self.rows + (nodes // 2 - 2 * self.short) * 2 * self.short
 
     def patches(self, loop: Floats) -> tuple[Floats, Floats]:
-        """Return nodes of the ring (n, rows + 1, 3) and of the core (n // 2 - 2 short + 1, 2 short + 1, 3).
+        """Return the nodes (ni, nj, 3) of the two patches of the cap: a ring of cells and the core inside it.
 
         The closed `loop` (n, 3) is in a plane of constant z. It starts at the trailing edge and runs along
         the upper side first. Normals of both patches point to +z, where the cap is.

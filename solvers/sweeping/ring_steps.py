@@ -14,7 +14,7 @@ _CLOSE = 1e-9  # of the length, to which steps fill it
 
 
 def ring_steps(lengths: Floats, sizes: Floats, rows: int, first: float | None) -> Floats:
-    """Return the steps (k, rows) on k lines of `lengths` (k,) that end at cells of `sizes` (k,).
+    """Return the steps (k, rows) on k lines of `lengths` (k,); the next cells have the lengths `sizes` (k,).
 
     Steps begin with `first`; if it is None, all ratios along a line are equal. If a ratio above `LARGEST`
     were needed, steps do not fill the length (see `largest_ratio`).
@@ -50,9 +50,9 @@ def fewest_rows(lengths: Floats, sizes: Floats, first: float | None, growth: flo
 
 
 def largest_ratio(lengths: Floats, sizes: Floats, steps: Floats) -> float:
-    """Return the largest ratio of neighbouring cells along lines that end at cells of `sizes` (k,).
+    """Return the largest ratio of neighbouring cell lengths on k lines, infinite if steps do not fill a line.
 
-    It is infinite if the `steps` (k, rows) do not fill the `lengths` (k,).
+    `lengths` (k,) are the lengths of the lines, `steps` (k, rows) their cells, `sizes` (k,) the next cells.
     """
     if np.abs(steps.sum(axis=1) - lengths).max() > _CLOSE * lengths.max():
         return math.inf

@@ -48,11 +48,11 @@ class CleanSection:
 
 
 def clean_section(points: Floats) -> CleanSection:
-    """Return the section through `points` (n, 2) in either direction.
+    """Return the section through `points` (n, 2), which are in clockwise or anticlockwise order.
 
-    The first point is taken as the trailing edge unless the other end is clearly sharper. Repeated points and
-    points on a straight base are removed. Neighbours in the wrong order are swapped. Raises InputError: fewer
-    than 4 distinct points; no area; ends too far apart for a trailing edge.
+    The first point is taken as the trailing edge unless the opposite end is clearly sharper. Repeated points
+    and points on a straight base are removed. Neighbours in the wrong order are swapped. Raises InputError:
+    fewer than 4 distinct points; no area; ends too far apart for a trailing edge.
     """
     raw = np.asarray(points, dtype=np.float64)
     extent = float(np.hypot(*np.ptp(raw, axis=0))) if len(raw) else 0.0

@@ -36,7 +36,7 @@ _PARTS = 128  # parts of a stretch in the search for the point farthest from the
 
 
 def swapped_note(section: CleanSection, places: Sequence[str]) -> tuple[str, ...]:
-    """Return a note on points of a section that were in the wrong order, if any."""
+    """Return a note that names the swapped points of a section; `places` names each of its points."""
     named = ", ".join(places[k] if places else f"point {k}" for k in section.swapped[:6])
     more = ", ..." if len(section.swapped) > 6 else ""
     return (Change(f"the outline is changed: points in the wrong order are swapped ({named}{more})"),)
@@ -190,7 +190,7 @@ def opened_note(height: float, thickness: float) -> str:
 
 
 def edge_notes(before: Airfoil, after: Airfoil, te: TrailingEdge, option: TrailingEdge) -> tuple[str, ...]:
-    """Return a note on how the treatment `te` changed the base, or that `option` has no effect, if so."""
+    """Return a note on how the treatment `te` changed the base, or that `option` has no effect; or ()."""
     base = f"the outline is changed: its base, {before.gap / before.chord:.3g} chords wide,"
     if before.blunt and te == "wedge":
         length = float(np.hypot(*(after.trailing_edge - before.trailing_edge))) / before.chord

@@ -74,7 +74,7 @@ class Workers:
     ) -> Iterator[tuple[T, R | Exception]]:
         """Yield each of the `tasks`, in order, with the result of `function` or its error.
 
-        At most `ahead` more tasks than there are workers are in progress or wait to be yielded.
+        At most `count` + `ahead` tasks are in progress or wait to be yielded.
         """
         under_way: deque[tuple[T, Future[R]]] = deque()
         for task in tasks:

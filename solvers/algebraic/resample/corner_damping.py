@@ -36,7 +36,7 @@ def openings(z: Any, xp: Any) -> Any:
 
 @lru_cache(maxsize=16)
 def fading(m: int, n: int) -> Floats:
-    """Return, for each of the four corners, which fraction (4, m, n) of its damping applies at each node."""
+    """Return the factors (4, m, n) by which the damping of each of the four corners fades at each node."""
     cells = np.maximum(*np.ogrid[0.0:m, 0.0:n])
     first = np.clip((FAR - cells) / (FAR - NEAR), 0.0, 1.0)
     return np.stack([first, first[:, ::-1], first[::-1], first[::-1, ::-1]])
@@ -44,10 +44,7 @@ def fading(m: int, n: int) -> Floats:
 
 @lru_cache(maxsize=16)
 def cubic(n: int, count: int) -> Floats:
-    """Return the matrix (count, n) from second derivatives at n uniform knots to their share of the spline.
-
-    The share is evaluated at `count` uniform places.
-    """
+    """Return the matrix (count, n) from second derivatives at n knots to their part of a spline."""
     return _weighted(n, count, 2)
 
 

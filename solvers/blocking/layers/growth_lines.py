@@ -32,7 +32,7 @@ class GrowthLines:
 
     @classmethod
     def of(cls, mesh: QuadMesh, limit: float, factors: Floats | None = None) -> Self:
-        """Return all pairs of a mesh; `limit` is the logarithm of the largest permitted ratio of each.
+        """Return all pairs of consecutive edges; `limit` is the logarithm of the largest permitted ratio.
 
         If `factors` (e,) are given, edge lengths are multiplied by them before ratios are computed.
         """
@@ -79,7 +79,7 @@ class GrowthLines:
         return replace(pairs, limit=limits)
 
     def some(self, which: Bools) -> Self:
-        """Return the pairs in the mask `which` (k,)."""
+        """Return the pairs of edges in the mask `which` (k,)."""
         return type(self)(self.nodes[which], self.limit[which], self.offset[which], self.begins[which])
 
     def growth(self, z: Complexes) -> Floats:
@@ -92,7 +92,7 @@ class GrowthLines:
         return z[self.nodes[:, 1]] - z[self.nodes[:, 0]], z[self.nodes[:, 2]] - z[self.begins]
 
     def largest_at(self, mesh: QuadMesh, rows: list[Indices]) -> Floats:
-        """Return the largest |growth| (n,) at each node; lines (k, m) in `rows` keep that of their start."""
+        """Return the largest |growth| (n,) at each node; on lines in `rows` (k, m), at least the start's."""
         growth = np.zeros(len(mesh.nodes))
         np.maximum.at(growth, self.nodes[:, 1], np.abs(self.growth(complex_of(mesh.nodes))))
         for table in rows:

@@ -72,9 +72,9 @@ class NearField:
         return cls(circle, centre, NEAR * reach, outer, angles, radii, arcs)
 
     def cells(self, first: float, settings: LayerSettings) -> int:
-        """Return the number of cells along a line from the circle to the outer loop.
+        """Return the number of cells on a line from the circle around the bodies to the outer boundary.
 
-        `first` is the height of the cells just inside the circle.
+        `first` is the height of the cells inside the circle that touch it.
         """
         growth, multiple = settings.below(GROWTH), settings.multiple
         distance = float(self.radii.mean()) - self.radius
@@ -82,9 +82,9 @@ class NearField:
         return -(-cells // multiple) * multiple
 
     def rows(self, mesh: QuadMesh, heights: Floats, settings: LayerSettings) -> Rows:
-        """Return straight rows from the nodes of the circle, loop 0 of `mesh`, to the outer loop.
+        """Return straight rows from the nodes of the circle, loop 0 of `mesh`, to the outer boundary.
 
-        `heights` (k,) are those of the cells just inside the circle; outside, cells grow by at most `GROWTH`.
+        `heights` (k,) are the heights of the k cells that touch the circle from inside.
         """
         order = mesh.places.along(0)
         start = mesh.nodes[order]

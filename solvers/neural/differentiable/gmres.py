@@ -14,8 +14,8 @@ def gmres(
 ) -> Tensor:
     """Return approximate solutions x (batch, n) of A x = `right` (batch, n) by restarted GMRES.
 
-    `times(x)` returns A x. The iteration ends if the norm of the residual is at most `tol` times that of
-    `right`, or after `most` products with A. It restarts when the Krylov space has dimension `space`.
+    `times(x)` returns A x. The iteration ends if the norm of the residual is at most `tol` times the norm
+    of `right`, or after `most` products with A. It restarts when the Krylov space has dimension `space`.
     """
     x, goal = torch.zeros_like(right), tol * right.norm(dim=1)
     rest, done = right, 0

@@ -82,7 +82,7 @@ class MGNet(Architecture):
         return xp.concatenate([xp.sin(turn * xi), xp.cos(turn * xi), 2.0 * eta - 1.0], -1)
 
     def slopes(self, xp: Any, points: Any) -> Sequence[Any]:
-        """Return phi (p, features) at `points`, and its first and second derivatives by xi and eta."""
+        """Return features (p, features) at `points`, and their first and second derivatives by xi and eta."""
         f = self.features(xp, points)
         zero, two = 0.0 * f[:, :1], 0.0 * f[:, :1] + 2.0
         if not self.periodic:

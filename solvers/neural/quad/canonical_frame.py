@@ -34,7 +34,7 @@ class Canonical:
     symmetric: bool = False  # an O boundary that is its own mirror image
 
     def back(self, planes: Floats) -> Floats:
-        """Return a grid `planes` (2, ni, nj), moved from the canonical frame to that of the boundary."""
+        """Return a grid `planes` (2, ni, nj), moved from the canonical frame to the frame of the boundary."""
         z = planes[0] + 1j * planes[1]
         along, across, transposed = self.element
         if self.symmetric:

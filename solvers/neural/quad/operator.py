@@ -63,8 +63,8 @@ class QuadOperator(Operator):
     ) -> list[Solution]:
         """Return a grid inside each boundary; its boundary nodes are exactly those of the boundary.
 
-        Boundaries with equal node counts form batches. The seconds of a solution are those of the batch,
-        divided by the number of boundaries in it.
+        Boundaries with equal node counts form batches. The seconds of a solution are the seconds of the
+        batch, divided by its number of boundaries.
         """
         self.check(boundaries)
         network = self.network(dtype)

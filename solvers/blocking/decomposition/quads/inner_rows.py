@@ -22,7 +22,7 @@ HalfEdges = dict[tuple[int, int], tuple[int, int]]
 
 
 def half_edges(mesh: QuadMesh) -> HalfEdges:
-    """Return, for each directed edge (a, b) of a quad, the index of the quad and that (0 to 3) of a in it."""
+    """Return, for each directed edge (a, b), the index of its quad and the position of a in it, 0 to 3."""
     return {(q[i], q[(i + 1) % 4]): (k, i) for k, q in enumerate(mesh.quads.tolist()) for i in range(4)}
 
 

@@ -22,7 +22,7 @@ Span = tuple[int, float, float]
 
 
 def wrong_count(mesh: QuadMesh) -> Bools:
-    """Return a mask (n,) of wall nodes with a wrong number of quads: not 2, or not that of their corner."""
+    """Return a mask (n,) of wall nodes whose number of quads is not 2 or, at a corner, not the corner's."""
     cells = mesh.places.cells
     return np.asarray(mesh.wall_nodes & (mesh.valence != np.where(cells > 0, cells, 2)))
 

@@ -17,7 +17,7 @@ SOME = 100  # number of quads whose images are searched for; the images of the o
 def images_of(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> Images:
     """Return the mirrors about which the quads of a mesh are symmetric, and each node's image (n,) in them.
 
-    `mirrors` are those that are tried, by default all mirrors of the domain.
+    Only `mirrors` are tried, by default all mirrors of the domain.
     """
     mirrors = mirrors_of(mesh.domain) if mirrors is None else mirrors
     images = []
@@ -31,7 +31,7 @@ def images_of(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> Images
 
 
 def node_images(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> list[Indices]:
-    """Return the indices (n,) of the nodes' images, for each mirror of `images_of`."""
+    """Return, for each mirror of the mesh, the index of the mirror image of each node (n,)."""
     return [to for _, to in images_of(mesh, mirrors)]
 
 
