@@ -57,7 +57,7 @@ Methods:
 Columns:
 
 - *first-cell change*: largest relative change of a first-cell height.
-- *angle increase*: largest increase of the largest cell corner angle of a grid.
+- *angle increase*: by how much the largest cell angle increases, in the worst of the grids.
 - *CPU*: CPU time to compute a new grid in memory, median / 90th percentile.
 
 """

@@ -249,7 +249,7 @@ Rows of the tables; bold rows are `infer` and the networks:
 Terms and columns:
 
 - *procedural airfoils*: random airfoils that a formula generates; none was used to train a network.
-  *spacing*: law of the wall nodes (`--spacing`).
+  *spacing*: how the wall nodes are distributed (`--spacing`).
 - *(60)* in a heading: number of shapes. The tables leave out those without a converged solution of Winslow's
   equations.
 - *grids without folded cells*: share of the grids, before repair.
@@ -258,8 +258,8 @@ Terms and columns:
 - *reference grid*: Winslow's converged solution, extrapolated from two grids; the finer of them has 2 or 4
   times as many cells in each direction as the tested grid. With uniform spacing its error is about 1e-4. For
   the rows *variational* and *quad-general* the reference grid is that of the row *variational, all nodes*.
-- *near the wall*: only nodes within 1.5 chords of the centre of the airfoil. In four-sided domains: the tenth
-  of the rows next to each side.
+- *near the wall*: only nodes within 1.5 chords of the centre of the airfoil. In four-sided domains:
+  at each side, the nearest 10 % of the rows.
 - *largest angle*, *mean angle*: each cell has a largest angle. The columns give the maximum and the mean of
   these angles over the cells. *relative to Winslow*: divided by the value of Winslow's converged grid on the
   same boundary. Smaller is better.

@@ -34,7 +34,7 @@ class BladeProfile:
 
     Parameters
     ----------
-    points : (n, 3) x, y, z around the profile in either direction, about the x axis.
+    points : (n, 3) x, y, z around the profile, in either direction; x is the axis of the machine.
     channel : the channel in which the profile stands.
 
     Raises InputError: too few points; points that enclose no area, or are outside the channel.

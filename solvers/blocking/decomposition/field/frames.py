@@ -70,7 +70,7 @@ def _wedges(field: CrossField, cut: Bools) -> Indices:
 
 
 def frame_sizes(field: CrossField) -> Floats:
-    """Return lengths e^H (t,), one per triangle, with which the crosses are nearly gradients; median 1.
+    """Return lengths e^H (t,), one per triangle, with which the cross field is nearly free of curl; median 1.
 
     Vectors e^H (cos theta, sin theta) are free of curl if grad H is grad theta rotated by a quarter turn; H
     satisfies this in the least-squares sense.
