@@ -173,7 +173,7 @@ def edge_of(face: Floats, side: Side, second: Side) -> Floats:
 
 
 def share_edges(faces: dict[Side, Floats]) -> None:
-    """Make shared edges bitwise equal, in place: each edge gets the nodes of the first of its two faces."""
+    """Make shared edges bitwise equal, in place: in the order of `FACES`, the first face determines them."""
     for side in FACES:
         faces[side] = np.array(faces[side])
     for side, second in edges():

@@ -58,8 +58,8 @@ class SceneSheet:
     """A layer of cells of a lattice.
 
     `axis` is the direction normal to the layer (None: the lattice is a layer). `node` is the layer's index
-    along it. `ranges` are first and last node along each other direction. In a large volume, whose lattices
-    are parts of blocks, the layer has the index `at` of its block along `across` (i, j or k).
+    along `axis`. `ranges` are first and last node along each other direction. In a large volume, lattices
+    are parts of blocks; `at` is then the layer's index in the block along `across` (i, j or k).
     """
 
     lattice: int
