@@ -44,7 +44,7 @@ class Places:
         return np.asarray(on[np.argsort(self.arc[on], kind="stable")])
 
     def take(self, nodes: Indices) -> Places:
-        """Return the places of the given nodes, without partners."""
+        """Return the places of the given nodes, without periodic partners."""
         cleared = np.full(len(nodes), -1, dtype=np.intp)
         return Places(self.loop[nodes], self.arc[nodes], self.cells[nodes], cleared)
 
@@ -151,7 +151,7 @@ class QuadMesh:
         return np.asarray(known[off.argmin(axis=1)])
 
     def beside_partners(self, nodes: Floats) -> Floats:
-        """Return `nodes` (n, 2), with each tied node at its partner's position plus the periodic shift."""
+        """Return `nodes` (n, 2); a node with a periodic partner is put at the partner plus the shift."""
         images = np.flatnonzero(self.places.partner >= 0)
         if images.size and self.domain.periodic:
             nodes = nodes.copy()

@@ -38,11 +38,11 @@ class Descent:
         self, still: float, most: int, *, epsilon: float = 0.0, relief: Floats | None = None,
         listener: Callable[[int, float, float], None] | None = None,
     ) -> tuple[float, float, int]:  # fmt: skip
-        """Minimise; return the value of the functional, the smallest corner Jacobian and the iterations.
+        """Minimise; return the functional, the smallest corner Jacobian and the number of iterations.
 
         The iteration ends if nodes move by less than `still` cell sizes, or after `most` iterations.
         `epsilon` (an area) regularises Jacobians. `relief` is the result of `relief_of`. `listener` gets the
-        number, value and gradient norm before the first and after each iteration.
+        number of the iteration, value and gradient norm, before the first and after each iteration.
         """
         return self.minimiser.run(self._z, *self._terms, epsilon, relief, still, REACH_CELLS, most, listener)
 

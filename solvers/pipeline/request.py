@@ -150,7 +150,7 @@ class Volume(Request):
 
     @property
     def of_surface(self) -> bool:
-        """Whether the options require marching from a surface, even if that is flat."""
+        """Whether the options require marching from a surface, even if the surface is flat."""
         return self.method == "hyperbolic" and not (OF_SURFACE | {"far_field"}).isdisjoint(self.chosen)
 
 

@@ -100,7 +100,7 @@ def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, rays: int)
 
 
 def wall_trails(seamless: SeamlessMap) -> Trails:
-    """Return one closed trail along each wall, with the domain on its left, the outer loop first."""
+    """Return a closed trail (line in the map) along each wall, outer loop first, the domain on its left."""
     triangulation = seamless.surface
     faces, edges = triangulation.walls
     start = triangulation.triangles[faces, edges]
