@@ -348,7 +348,7 @@ def faces() -> None:
 def network() -> None:
     """Draw the way from a boundary to a grid."""
     drawing = Drawing((0.0, 8.2), (0.0, 1.5), 660)
-    steps = ("boundary", "start grid", "network", "zero at walls", "splines", "check")
+    steps = ("boundary", "initial grid", "network", "zero at walls", "splines", "check")
     for k, step in enumerate(steps):
         left = 0.1 + 1.36 * k
         drawing.area([(left, 0.5), (left + 1.14, 0.5), (left + 1.14, 1.0), (left, 1.0)], GOOD)
@@ -357,7 +357,7 @@ def network() -> None:
             drawing.line([(left + 1.16, 0.75), (left + 1.34, 0.75)], INK, 1.6)
     drawing.line([(2.03, 1.0), (2.03, 1.3), (4.75, 1.3), (4.75, 1.0)], FAINT, 1.4, "4 3")
     drawing.text((3.4, 1.35), "plus the correction", FAINT, 12)
-    drawing.save("network", "Boundary, start grid, correction by a network, evaluation, check")
+    drawing.save("network", "Boundary, initial grid, correction by a network, evaluation, check")
 
 
 def levels() -> None:
