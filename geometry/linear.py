@@ -107,8 +107,8 @@ def least_squares(matrix: Any, right: Any) -> Floats:
 def nearest_rotation(maps: Any) -> Floats:
     """Return the rotation nearest, in the Frobenius norm, to each matrix (..., d, d), where d is 2 or 3.
 
-    Determinants may be zero or negative. By unit quaternions in three dimensions (Horn, J. Opt. Soc. Am. A 4,
-    1987).
+    Determinants may be zero or negative. In three dimensions, unit quaternions are used (Horn, J. Opt.
+    Soc. Am. A 4, 1987).
     """
     m = np.asarray(maps, np.float64)
     if m.shape[-1] == 2:

@@ -55,8 +55,8 @@ class NormalEquations:
     def step(self, residuals: Sequence[Residuals], diagonal: Floats, slope: Floats) -> Floats:
         """Return the changes of the unknowns, (n,) or (2 n,).
 
-        `diagonal` and `slope`, of the same shape, have the second and the first derivatives of additional
-        terms, each with one unknown. Raises SolverError if the equations are singular.
+        `diagonal` has the second and `slope` the first derivatives of additional terms, each a function of
+        one unknown. Raises SolverError if the equations are singular.
         """
         size, block = self._shape
         values, right = np.zeros(self.pattern.entries * block**2), -slope.reshape(size, block)

@@ -94,9 +94,9 @@ class PartFiles:
         return 0
 
     def state(self, number: int, inputs: Sequence[Input]) -> State:
-        """Return the state of a part: ``missing``, ``complete``, or ``extended`` if it is to be extended.
+        """Return the state of a part: ``missing``, ``complete``, or ``extended`` (it must be extended).
 
-        A part is to be extended if there are more `inputs` than it was made of, or if a failed input has
+        A part must be extended if there are more `inputs` than it was made of, or if a failed input has
         changed or may succeed now. Raises OtherPartsError if the part was made of other inputs or settings,
         InputError if it cannot be read.
         """

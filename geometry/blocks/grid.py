@@ -237,7 +237,7 @@ class Grid(Connected):
         return inside
 
     def walls(self) -> list[Patch]:
-        """Return the patches that are walls: those of kind wall, and those of unknown kind on a body.
+        """Return the walls: patches of kind wall, and on a body also patches of unknown kind.
 
         If a four-sided grid of one block has no patch of kind wall, its walls are the patches of unknown kind
         on south and north. In a grid of several blocks only patches of kind wall, or with the name of a wall,

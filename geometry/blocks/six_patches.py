@@ -23,8 +23,8 @@ _NEAR = 0.2  # largest distance between matching corners, over the shortest side
 def six_faces(grid: Grid) -> SixFaces:
     """Return the boundary of a volume, from the faces of one block or from six patches in any order.
 
-    If the nodes of a shared edge differ, but by at most 1e-6 of the diagonal of the bounding box, the second
-    patch gets the nodes of the first, and a note says so.
+    The nodes of a shared edge may differ by 1e-6 of the diagonal of the bounding box. Then one patch gets the
+    nodes of the other patch, and a note says so.
 
     Raises InputError: neither one block nor six patches; patches that do not close (the message gives the
     edge and the width of the gap).

@@ -63,7 +63,7 @@ class Lift:
     phase: Any
 
     def to_plane(self, w: Any, xp: Any = np) -> Any:
-        """Return the points z of strip points w of any shape; `xp` is numpy or torch."""
+        """Map points w of the strip, an array of any shape, to the plane; `xp` is numpy or torch."""
         zeta = self.pole + functions_of(xp).exp(w + 1j * self.phase)
         for corner in reversed(self.corners):
             zeta = corner.restore(zeta)

@@ -100,7 +100,7 @@ class Judgement:
     beyond : tuple of str
         A short text for each problem and each warning, such as ``max_angle 178.2 > 170``.
     replaced : tuple of str
-        Limits of gates that override those of a profile, such as ``box_ratio > 4000``.
+        Limits of gates that override limits of a profile, such as ``box_ratio > 4000``.
     profile : ProfileReport, optional
         The outcome of every check of the profiles.
     """

@@ -32,7 +32,7 @@ class PoleCore:
     ----------
     nodes : (b + 1, a + 1, 3) nodes of the core, oriented as the fan (the patch at the pole).
     rows : (r, m + 1, 3) rows from the edge of the core to the column `at`.
-    at : index of the first column of the fan (m + 1, n, 3) that is kept.
+    at : index of the first column of the fan (m + 1, n, 3) that is not replaced.
     """
 
     nodes: Floats

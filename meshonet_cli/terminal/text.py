@@ -8,7 +8,7 @@ _BAR_LENGTH = 24  # number of characters of a progress bar
 
 
 def aligned(rows: Sequence[Sequence[str]], left: int = 1) -> str:
-    """Return `rows` as aligned lines; the first `left` columns are flush left, the others flush right."""
+    """Return `rows` as aligned lines: the first `left` columns are flush left, all others flush right."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = []
     for row in rows:

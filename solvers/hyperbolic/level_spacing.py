@@ -69,8 +69,8 @@ def level_steps(
 
     Parameters
     ----------
-    constant : number of equal steps at the wall; the others grow by one ratio.
-    edge : sharp edge; where lines diverge from it, steps grow less (constants are fitted on airfoils).
+    constant : number of equal steps at the wall; all further steps grow by one ratio.
+    edge : sharp edge of the wall; where lines diverge from the edge, steps grow less.
     shares : (cells,) weights of the logarithms of the growth ratios.
 
     >>> level_steps(1.0, 9.0, 5, 3, None).tolist()

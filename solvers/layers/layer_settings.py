@@ -79,7 +79,7 @@ class LayerSettings:
 
     @property
     def join(self) -> float:
-        """Ratio of the first cell beyond the layers to the last layer."""
+        """Height of the first cell beyond the layers, divided by the height of the last layer."""
         return min(JOIN, math.sqrt(self.limit)) if self.limit else JOIN
 
     @property

@@ -78,7 +78,7 @@ def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result
     """Yield the grid of each shape, or the error in which it ended, in the order of the shapes.
 
     Some methods solve several shapes together. They then read a limited number of shapes ahead, and their
-    grids differ from those of separate calls in the last digits.
+    grids differ from the grids of separate calls in the last digits.
 
     Parameters
     ----------

@@ -141,7 +141,7 @@ def _begun(plan: SectionPlan, planes: Sequence[SectionPlane], section: KeySectio
 
 
 class NextSections:
-    """Makes key sections one after another with the same blocks, each from the one before."""
+    """Makes key sections one after another with the same blocks, each from the previous section."""
 
     def __init__(self, plan: SectionPlan, section: KeySection) -> None:
         self.plan = plan

@@ -54,7 +54,7 @@ class NodeGroup:
         return values
 
     def at(self, heights: Floats) -> Floats:
-        """Return s, theta, h (levels, m, 3) (`Channel`) at `heights` (levels, m); first cells are exact."""
+        """Return s, theta, h (levels, m, 3) (`Channel`) at `heights` (levels, m), with exact first cells."""
         values = np.empty((*heights.shape, 3))
         values[..., :2], values[..., 2] = self.lines.at(heights), heights
         np.clip(values[..., 0], 0.0, 1.0, out=values[..., 0])

@@ -83,7 +83,7 @@ class SpanPlaces:
 
 
 def at_corners(places: Floats, corners: Floats) -> Floats:
-    """Return `places` (k,) around a blade, with the one nearest to each of the `corners` (c,) moved there."""
+    """Return `places` (k,) around a blade; the place nearest to each of the `corners` (c,) moves to it."""
     out = places.copy()
     out[corner_nodes(places, corners)] = corners
     return out

@@ -17,8 +17,8 @@ def with_layers(mesh: QuadMesh, original: QuadMesh) -> tuple[QuadMesh, Bools]:
     """Return `mesh` with the layer heights of `original`, and a mask (n,) of the nodes in layers.
 
     Both meshes have the same quadrilaterals. Layers are rows of `THIN` cells at the boundary. A node in a
-    layer moves along its line from the wall, to the distance that the layer has in `original` at the same arc
-    length of the wall. Nodes in layers of two walls stay.
+    layer moves along its grid line from the wall. Its new distance is the distance of the layer in `original`
+    at the same arc length of the wall. Nodes in layers of two walls stay.
     """
     lines = _lines(original)
     held = np.zeros(len(original.nodes), dtype=bool)

@@ -34,7 +34,7 @@ def thinned(boundary: Boundary, ni: int, nj: int) -> Boundary:
 def refine_grid(coarse: Floats, boundary: Boundary) -> Floats:
     """Return nodes (ni, nj, 2) inside `boundary`, interpolated by splines from a `coarse` grid (m, n, 2).
 
-    The boundary of the coarse grid must be the one that `thinned` returns.
+    The coarse grid must have the boundary that `thinned` returns.
     """
     if boundary.periodic:
         return refine_around(coarse, boundary)

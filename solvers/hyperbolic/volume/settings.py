@@ -75,8 +75,8 @@ class VolumeMarch:
 class Smoothing(NamedTuple):
     """Parameters of the march in ``kernels/surfaces/march.h``, without `size`, and two of `march_graph`.
 
-    `outer` is the explicit smoothing far away, divided by that near the wall. With values up to 6, levels
-    around a sphere stay spheres; 16 makes better cells behind swept wings.
+    `outer` is the explicit smoothing far from the wall, relative to the smoothing near it. Up to a value of 6,
+    levels around a sphere stay spheres; 16 makes better cells behind swept wings.
     """
 
     explicit: float = 0.3

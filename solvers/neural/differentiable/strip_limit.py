@@ -30,7 +30,7 @@ def picard(c: Tensor) -> Tensor:
 class Settled(torch.autograd.Function):
     """Torch function from initial Fourier modes (batch, modes, LEVELS) to a solution of Winslow's equations.
 
-    The highest modes stay near the initial ones.
+    The highest modes stay near the initial modes.
     """
 
     @staticmethod

@@ -52,7 +52,7 @@ class QuadTask(Task):
     """Training of the U-Net on grids by Winslow's equations and by the variational method.
 
     `training` and `held_out` are domains with both grids. `steps` is the number of steps of the whole run.
-    `weights` has the weights of the loss terms, `initial` those of the network, both by name.
+    `weights` has the weights of the loss terms, `initial` the initial weights of the network, by name.
     """
 
     parts: tuple[str, ...] = tuple(PARTS)

@@ -67,7 +67,7 @@ def train(
 
 
 def standard(model: str) -> Plan:
-    """Return the default training settings: those of the shipped model, or those of the paper."""
+    """Return the default settings for training `model`."""
     plan: Plan = _module(model).PLAN
     return plan
 

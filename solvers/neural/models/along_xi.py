@@ -27,8 +27,8 @@ SCALING = (  # filter of the scaling function
 class AlongXi(Architecture):
     """A neural operator from functions of xi to functions of xi, evaluated on nodes of the training grids.
 
-    The input at each xi is xi, x and y of the south and north nodes there, and x and y of a few fixed nodes
-    of west and east. The output at each xi is x and y of all nodes on this grid line.
+    The input at each xi is xi itself, x and y of the south and the north node at xi, and x and y of a few
+    fixed nodes on west and east. The output at each xi is x and y of all nodes on this grid line.
     """
 
     native: ClassVar[bool] = True

@@ -41,7 +41,7 @@ def symmetric_blocks(
     blocks: BaseComplex, find: FindPart, optimised: Optimised, score: Score,
     unsized: Callable[[], QuadMesh] | None = None, worth: float = WORTH,
 ) -> BaseComplex:  # fmt: skip
-    """Return symmetric blocks of the domain of `blocks`, or `blocks` if no symmetric ones are about as good.
+    """Return symmetric blocks of the domain of `blocks`, or `blocks` if symmetric blocks are clearly worse.
 
     The score of symmetric blocks may be worse by `worth`. With three mirrors or more than four, blocks
     symmetric about all of them are tried: first the given blocks, then blocks made from a sector. With two
