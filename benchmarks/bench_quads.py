@@ -242,7 +242,8 @@ TAIL = """
 ## Conclusions
 
 - **One domain**: use `solve-pde --method variational` with `--coarse 33` or 65, which takes 6 to 13 ms per
-  grid, with a gain of 99 to 100 %. `quad-general --polish off` takes 2 to 5 ms, but its gain is only 94 to 96 %.
+  grid, with a gain of 99 to 100 %. `quad-general --polish off` takes 2 to 5 ms, but its gain is only
+  94 to 96 %.
 - **Batches**: use `infer --model quad-general --polish off`. A grid takes 1.1 ms in a batch, and 8.4 ms with
   the solver. Up to 0.9 % of the grids have folded cells, which `infer` repairs. With `--polish 2` all 372
   grids of the first three tables are valid, and a grid takes 5.5 ms in a batch.
