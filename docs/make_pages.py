@@ -84,13 +84,17 @@ by the file extensions. If an extension belongs to several formats, name the for
   mesh. A format without an entry cannot store a multi-block grid.
 - *many*: whether one file can contain several grids or boundaries.
 - *options*: variants of the format. Write them after a colon, for example `--to gmsh:4.1,ascii`. Of words
-separated by slashes, choose at most one. The first word is the default, unless the extension implies
-another.
+  separated by slashes, choose at most one. The first word is the default, unless the extension implies
+  another.
 
 """
 FORMATS_REST = """
 Details are on three other pages: [conventions of formats](format-details.md) (multi-block grids, boundaries,
 variants of Plot3D), [files in three dimensions](format-volumes.md) and [HDF5](hdf5.md) (datasets).
+
+These folders contain complete examples with flow solvers: `examples/naca0012-openfoam`,
+`examples/cylinder-openfoam`, `examples/pipe-bend-openfoam`, `examples/aircraft`, `examples/blade-row` and
+`examples/naca0012-su2`.
 
 ## Files that meshonet cannot read
 
@@ -98,10 +102,6 @@ variants of Plot3D), [files in three dimensions](format-volumes.md) and [HDF5](h
 - `.vts` files compressed with LZ4: write them with zlib or LZMA.
 - `.msh` files of Fluent, which are not Gmsh files. meshonet cannot write them either.
 - Gmsh meshes of other versions than 2.2 and 4.1, and binary DXF files.
-
-These folders contain complete examples with flow solvers: `examples/naca0012-openfoam`,
-`examples/cylinder-openfoam`, `examples/pipe-bend-openfoam`, `examples/aircraft`, `examples/blade-row` and
-`examples/naca0012-su2`.
 """
 
 BLOCKING_HEAD = """# Files of blocking

@@ -31,7 +31,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("layout", "Split domains into blocks and write the block layout."),
     Command("stack", "Make volume grids of wings, ducts, blade rows and aircraft."),
     Command("sweep", "Sweep cross-sections along curves: pipes and ducts."),
-    Command("deform", "Deform grids to changed walls, and keep their layers."),
+    Command("deform", "Deform grids to fit changed walls; layers are kept."),
     Command("quality", "Measure quality: folded cells, angles, growth."),
     Command("convert", "Convert files from one format to another."),
     Command("plot", "Draw grids, coloured by a quality metric."),

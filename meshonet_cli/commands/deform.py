@@ -35,7 +35,7 @@ def deform(
     threads: o.Threads = None,
     leave_out_failed: o.LeaveOutFailed = False,
 ) -> int:
-    """Deform grids to changed walls, and keep their layers."""
+    """Deform grids to fit changed walls; layers are kept."""
     from meshonet_cli.tasks.deformations import walls_of, write_deformed
 
     walls = walls_of(wall or (), rotate or (), shift or ())

@@ -46,8 +46,8 @@ def infer(
         "then means 3 for airfoil-o and off for other models. [default: NumPy, without torch]",
     ),
     fallback: bool = _option(
-        default=False, help="Use the solver that the network imitates if the expected error of the network "
-        "is above 0.03 or if its grid has folded cells.",
+        default=False, help="Use the solver that the network imitates if the network's grid has folded "
+        "cells or an expected relative L2 error above 0.03.",
     ),
     refine: o.Refine = 0,
 ) -> int:

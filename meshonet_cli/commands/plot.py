@@ -43,8 +43,8 @@ def plot(
     files: PictureFiles,
     run: o.InputOptions,
     metric: str = _option(
-        default="max_angle", metavar="METRIC", help="Metric that colours the cells: one in the report of "
-        "meshonet quality, growth, or non_orthogonality, face_skewness or box_ratio of checkMesh. none: grid "
+        default="max_angle", metavar="METRIC", help="Metric that colours the cells: a metric of cells in the "
+        "report of meshonet quality, or growth, non_orthogonality, face_skewness or box_ratio. none: grid "
         "lines only.",
     ),
     zoom: str | None = _option(

@@ -36,8 +36,8 @@ def quality(
     ),
     compare: str | None = _check(
         metavar="OTHER", help="File with reference grids of the same size. The report then gives the "
-        "distances of nodes from the reference, its folded cells, and the largest and the mean angle divided "
-        "by those of the reference.",
+        "distances of nodes from the reference, the folded cells of the reference, and maximum and mean of "
+        "max_angle divided by those of the reference.",
     ),
     pair: Literal["auto", "name", "order"] | None = _check(
         help="Rule that assigns grids to the references of --compare. name: equal names. order: first to "

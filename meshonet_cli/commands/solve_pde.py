@@ -58,9 +58,9 @@ def solve_pde(
     ),
     coarse: str = _option(
         default="auto", metavar="auto|off|N", help="Solve on at most N x N nodes and interpolate to --res by "
-        "splines. off: solve on all nodes. auto: in four-sided domains, 257 for winslow with more than 512 "
-        "nodes along a side, 129 for variational with more than 257; else, and with --tol, --max-cycles or "
-        "--initial, off.",
+        "splines. off: solve on all nodes. auto: off, except in four-sided domains without --tol, "
+        "--max-cycles and --initial: there N = 257 for winslow if a side has more than 512 nodes, and N = "
+        "129 for variational if a side has more than 257.",
     ),
     refine: o.Refine = 0,
     initial: str | None = _option(
@@ -80,8 +80,8 @@ def solve_pde(
 ) -> int:
     """Make elliptic, variational or marched grids.
 
-    A volume grid or six patches give the faces of a volume, which is filled. With a first cell, the volume
-    outside a surface is marched from its patches. A multi-block grid is smoothed, also across interfaces.
+    Six surface patches, or the faces of a volume grid, are filled. With a first cell, the volume outside a
+    surface is marched from its patches. A multi-block grid is smoothed, also across interfaces.
     """
     from meshonet_cli.tasks.grids import initial_grid, write_grids
 

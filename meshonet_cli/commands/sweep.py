@@ -81,8 +81,8 @@ def sweep(
     first_cell: str | None = o.option_of(o.BOUNDARY_LAYER)(
         "--first-cell", "--wall-spacing", metavar="H|WALL=H,...", help="Height of the first cell at walls, "
         "in the unit of the section. H applies to the sides of a four-sided section, to holes, and to an "
-        "outer curve without corners, but not to sides named inlet, outlet, axis or symmetry. WALL=H,WALL=H "
-        "makes a multi-block section with layers at the named walls only. [default: no layers]",
+        "outer curve without corners, but not to sides named inlet, outlet, axis, symmetry or farfield. "
+        "WALL=H,WALL=H makes a multi-block section with layers at the named walls only. [default: no layers]",
     ),
     y_plus: o.YPlusAtWalls = None,
     reynolds: o.Reynolds = None,

@@ -31,8 +31,8 @@ def tfi(
         default="tfi", help=" ".join(map("{}: {}.".format, ALGEBRAIC, ALGEBRAIC.values())),
     ),
     blending: BlendingName | None = _option(
-        metavar="arclength|linear", help="Blending functions of the interpolation. arclength: of the "
-        "relative arc length along the edges. linear: of the node index. [default: arclength]",
+        metavar="arclength|linear", help="Variable of the blending functions. arclength: relative "
+        "arc length along the edges. linear: node index. [default: arclength]",
     ),
 ) -> int:
     """Make grids by transfinite interpolation."""

@@ -25,7 +25,7 @@ class TrainOptions:
 
     model: str | None = _option(
         metavar="NAME", help="Architecture. strip: operator for airfoils. quad: operator for four-sided "
-        "domains. meshonet: network of the MeshONet paper. meshonet-hard: similar, with an exact boundary. "
+        "domains. meshonet: network of the MeshONet paper. meshonet-hard: with exact boundary nodes. "
         "Baselines: deeponet, pod-deeponet, fno1d, fno2d, wno, kno, lno, mionet. Physics-informed: mgnet, "
         "meshnet. [default: strip for datasets of boundaries, else meshonet]",
     )

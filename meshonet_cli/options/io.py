@@ -92,8 +92,8 @@ class InputOptions(PrintOptions):
         "files and lists. Case does not matter. Repeatable.",
     )
     shard: str | None = _option(
-        metavar="K/N", help="Process only every N-th input from the K-th on, so that N jobs share the work; "
-        "of a dataset in parts, every N-th part.",
+        metavar="K/N", help="Process only every N-th input from the K-th on, or every N-th part of a dataset, "
+        "so that N jobs share the work.",
     )
 
     def inputs(
@@ -131,7 +131,7 @@ class RunOptions(InputOptions):
     )
     engine: EngineName = _option(
         default="processes", help="What runs the processes. processes: this machine. dask: a Dask cluster. "
-        "mpi: mpiexec -n N meshonet ..., on N ranks.",
+        "mpi: N MPI ranks (mpiexec -n N meshonet ...).",
     )
     scheduler: str | None = _option(
         metavar="ADDRESS", help="Address of the Dask scheduler, e.g. tcp://head:8786. [default: a cluster of "

@@ -24,8 +24,8 @@ _option = option_of(SAMPLING)
 # fmt: off
 Resolution = Annotated[str | None, _option(
     "--res", metavar="N|NIxNJ[xNK]", help="Number of nodes: N along every direction, or NI along xi (around "
-    "a body), NJ along eta (away from it) and NK along zeta (volumes). With --growth, N is NI. In a "
-    "multi-block grid N is the number of cells along its largest extent. [default: the nodes of the input; "
+    "a body), NJ along eta (away from it) and NK along zeta (volumes). With --growth, N is NI only. In "
+    "a multi-block grid N is the number of cells along its largest extent. [default: the nodes of the input; "
     "200x100 for airfoils and outlines]",
 )]
 
@@ -37,8 +37,8 @@ class SamplingOptions:
     res: Resolution = None
     topology: TopologyName = _option(
         default="auto", help="Topology of the grid. quad: four-sided. o: around a body. c: around an airfoil "
-        "and its wake; NI includes both sides of the wake. auto: c around an airfoil with a sharp trailing "
-        "edge and a first cell (not in tfi); o around other airfoils, and around outlines with fewer than "
+        "and its wake; NI includes both sides of the wake. auto: c with a first cell around an airfoil whose "
+        "trailing edge is sharp (not in tfi); o around other airfoils, and around outlines with fewer than "
         "four convex corners; else quad.",
     )
     spacing: SpacingName = _option(
@@ -58,14 +58,14 @@ class SamplingOptions:
     )
     te: Literal["auto", "exact", "round", "wedge"] = _option(
         default="auto", help="Shape of a blunt trailing edge. exact: unchanged. round: corners rounded. "
-        "wedge: closed by a wedge. auto: wedge in C grids that are not marched, and in C grids whose base is "
-        "lower than one first cell, or lower than both 10 first cells and 0.005 chords; else exact.",
+        "wedge: closed by a wedge. auto: exact in O grids, and in marched C grids whose base is higher than "
+        "10 first cells, or than both 0.005 chords and one first cell; else wedge.",
     )
     far_field: float | None = _option(
-        metavar="R", help="Smallest distance of the far field from the middle of the body. Its unit is the "
-        "chord of a single airfoil, the largest extent of all bodies together, or for a marched volume the "
-        "unit of its surface. For lift and drag use 100 or more. [default: 15; for a volume 15 largest "
-        "extents]",
+        metavar="R", help="Smallest distance of the far field from the middle of the body, in chords of a "
+        "single airfoil, else in largest extents of all bodies together; for a marched volume in the unit of "
+        "its surface. For lift and drag use 100 or more. [default: 15; for a volume 15 times the largest "
+        "extent of its surface]",
     )
     wake: float | None = _option(
         metavar="L", help="Length of the wake of a C grid, from the trailing edge, in chords. [default: as "
