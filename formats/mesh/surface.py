@@ -37,7 +37,7 @@ class MeshBoundary:
 
     Parameters
     ----------
-    edges : point numbers (k, 2) of the edges of each name; if empty, edges with only one cell are taken.
+    edges : point numbers (k, 2) of the edges of each name; if empty, edges that belong to only one cell.
     cells : point numbers (m, 3 or 4), an array for each kind of cell.
     """
 

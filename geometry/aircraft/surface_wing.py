@@ -135,7 +135,7 @@ class SurfaceWing:
         return out
 
     def arc(self, place: float) -> float:
-        """Return the length in chords from the upper trailing edge to a `place` (`line`), at half span."""
+        """Return the length in chords from the upper trailing edge to `place` (see `line`), at half span."""
         return float(np.interp(place, np.arange(len(self.strips) + 1), self._bounds))
 
     def places(self, arcs: Floats) -> Floats:

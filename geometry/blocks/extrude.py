@@ -131,7 +131,7 @@ def _renamed(patches: Sequence[Patch], ends: Sequence[str]) -> list[Patch]:
 
 
 def thick(each: Connection, planes: int) -> Connection:
-    """Return a connection of planar blocks as one of volumes; it extends over `planes` planes of nodes."""
+    """Return a connection of planar blocks as a connection of volumes, over `planes` planes of nodes."""
     whole = (0, planes - 1)
     ranges = (*each.range, whole), (*each.donor_range, whole)
     motion = each.transform

@@ -105,7 +105,7 @@ class SixFaces:
     def edges_along(self, axis: int) -> list[Floats]:
         """Return the four edges (n, 3) of the volume along the direction number `axis`.
 
-        In the two other directions, they are at (low, low), (high, low), (low, high) and (high, high).
+        In the two other directions, the edges are at (low, low), (high, low), (low, high) and (high, high).
         """
         first, second = (
             [side for side in FACES if PLACES[side][0] == each] for each in range(3) if each != axis

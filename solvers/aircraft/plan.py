@@ -50,7 +50,7 @@ class AircraftPlan:
 
     @classmethod
     def of(cls, aircraft: Aircraft, request: AircraftRequest, space: BodyMap, around: int) -> Self:
-        """Return the plan with `around` nodes around each wing; without a requested growth, `GROWTHS[0]`.
+        """Return the plan with `around` nodes around each wing; the default growth is `GROWTHS[0]`.
 
         Raises InputError if a wing does not begin inside the body or does not leave it, if wings are too
         close to each other, or if a root is too close to keel or crown.
@@ -107,7 +107,7 @@ class AircraftPlan:
 def plan_of(
     aircraft: Aircraft, request: AircraftRequest, space: BodyMap
 ) -> tuple[AircraftPlan, tuple[str, ...]]:
-    """Return the plan with the requested number of cells, or of nodes around wings, and notes.
+    """Return the plan for the requested number of cells or of nodes around wings; return notes too.
 
     Raises InputError as `AircraftPlan.of`.
     """

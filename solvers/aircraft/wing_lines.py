@@ -85,7 +85,7 @@ class WingLines:
         return np.stack([self.loft.line(k, z[:, k]) for k in range(z.shape[1])], axis=1)
 
     def with_first(self, parts: Floats, first: float) -> Floats:
-        """Return `parts` (k, n), fractions on n lines, with the second points at `first` from the root."""
+        """Return `parts` (k, n), fractions on n lines; the second points are `first` away from the root."""
         parts = parts.copy()
         for _ in range(_ROUNDS):
             root, second = self.points(parts[:2])

@@ -15,7 +15,7 @@ STEEPEST = 8.0  # largest ratio of the largest to the smallest cell along an edg
 
 
 class WantedCounts:
-    """Converter from target sizes, always at the same points, to cell counts of chords (rows of blocks)."""
+    """Converts target sizes at fixed points to cell counts of chords (rows of blocks)."""
 
     def __init__(self, chords: Chords, metric: SizeMetric) -> None:
         self.chords = chords

@@ -72,7 +72,7 @@ def across() -> Across:
 def interpolation(eta: bytes) -> Floats:
     """Return the matrix (LEVELS, n) of interpolation from the Chebyshev points to `eta`; it is read-only.
 
-    `eta` are the bytes of an array (n,), as a key of the cache.
+    `eta` are the bytes of an array (n,), so that the result can be cached.
     """
     s = elementary.log1p(np.frombuffer(eta) * math.expm1(CLUSTERING)) / CLUSTERING
     return read_only(barycentric(across().s, weights(LEVELS), s))

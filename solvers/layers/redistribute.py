@@ -47,8 +47,8 @@ PASSES = 100  # largest number of alternating corrections of first cells off edg
 def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution:
     """Return `solution` with its nodes moved along its grid lines into layers.
 
-    `solution` is a valid quad or O grid for `boundary`, preferably with rows of similar height. The boundary
-    nodes of the result differ from those of `boundary`.
+    `solution` is a valid quad or O grid for `boundary`, preferably with rows of similar height. The result
+    has other boundary nodes than `boundary`.
 
     Raises InputError if the boundary cannot have the heights, or if growth would exceed the limit.
     """

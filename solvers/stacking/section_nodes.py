@@ -67,7 +67,7 @@ def around(
     nodes: int, *, gap: float = GAP, base: int = BASE_CELLS,
     edge: float | None = None, nose: float | None = None,
 ) -> Around:  # fmt: skip
-    """Return the distribution of `nodes` nodes around sections, with the repeated first node.
+    """Return the distribution of `nodes` nodes around sections, including the repeated first node.
 
     Other parameters are the fields of `Around`.
 

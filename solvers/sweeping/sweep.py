@@ -67,7 +67,7 @@ def sweep(section: Grid, path: Path, settings: Sweep | None = None) -> Grid:
     """Return the volume grid of a planar section swept along a path.
 
     The first plane is the patch ``inlet``, the last ``outlet``; a closed path has neither. Outer patches
-    without a name are called ``wall``, and those without a kind are walls.
+    without a name are called ``wall``, and outer patches without a kind are walls.
 
     Raises InputError if the section is not planar or is periodic, if a bend is too tight for the section, if
     the path needs too many planes, or as `frames_along`.

@@ -32,7 +32,7 @@ AROUND_CORNER = 2.5
 
 @dataclass(frozen=True, eq=False)
 class RowSizes:
-    """Cell sizes at points along a boundary loop, of which some parts have layers.
+    """Cell sizes at points along a boundary loop; some parts of the loop have layers.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ class Seen:
         )
 
     def opposite(self, splay: float) -> "Seen":
-        """Return the ghost on the other side of the node, 1 + `splay` times as far away as the neighbour."""
+        """Return the ghost node opposite to the neighbour, 1 + `splay` times as far away from the node."""
         far = 1.0 + splay
         return Seen(self.base, 1.0 + far, -far * self.sign, -far * self.shift)
 

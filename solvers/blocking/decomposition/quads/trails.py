@@ -14,7 +14,7 @@ Tables = tuple[Floats, Indices, Indices, Indices]
 
 
 def map_tables(seamless: SeamlessMap) -> Tables:
-    """Return arrays of the map: coordinates (t, 3, 2); neighbours, edges there and turns, each (t, 3)."""
+    """Return the map's coordinates (t, 3, 2), and neighbours, edges in neighbours, turns, each (t, 3)."""
     coords = np.ascontiguousarray(seamless.corner_coords).view(np.float64).reshape(-1, 3, 2)
     return coords, seamless.surface.neighbours, seamless.surface.neighbour_edge, seamless.turns
 
