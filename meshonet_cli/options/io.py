@@ -92,8 +92,8 @@ class InputOptions(PrintOptions):
         "files and lists. Case does not matter. Repeatable.",
     )
     shard: str | None = _option(
-        metavar="K/N", help="Process only every N-th input from the K-th on, or every N-th part of a dataset, "
-        "so that N jobs share the work.",
+        metavar="K/N", help="Process only every N-th input from the K-th on, or every N-th part of a "
+        "dataset, so that N jobs share the work.",
     )
 
     def inputs(
