@@ -242,7 +242,7 @@ def _text(value: object) -> str:
 
 
 def check_heaps(source: Source) -> None:
-    """Raise InputError if texts do not fill the storage area (heap) of texts that they are in."""
+    """Raise InputError if a storage area of texts (a heap) is not filled exactly by its texts."""
     if source.size > _MOST_SEARCHED:
         return
     with source.open() as stream, contextlib.ExitStack() as stack:

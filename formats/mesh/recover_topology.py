@@ -61,7 +61,7 @@ def recovered(nodes: Floats, name: str = "") -> Grid:
 
 
 def usable(nodes: Floats) -> Floats:
-    """Return `nodes` (ni, nj, 2), (ni, nj, 3) or (ni, nj, nk, 3) unchanged if they can be those of a grid.
+    """Check `nodes` (ni, nj, 2), (ni, nj, 3) or (ni, nj, nk, 3) of a grid, and return them unchanged.
 
     Raises InputError if a direction has only one node, or a coordinate is not finite or above `LARGEST`.
     """

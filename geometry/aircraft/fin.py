@@ -17,7 +17,7 @@ _POINTS = 65  # points of a side that are compared
 class Fin(Stack):
     """A wing of symmetric sections in the plane of symmetry; its first section is inside the body.
 
-    The parameters are those of `Stack`; the z of a section is its height, y in the axes of the aircraft.
+    It has the parameters of `Stack`. The z of a section is its height: the coordinate y of the aircraft.
 
     Raises
     ------

@@ -41,7 +41,7 @@ def conformal_knots(
     ----------
     marks : (m,) ascending arc lengths in (0, length) at which there must be nodes.
     at : (m,) indices of the nodes at `marks`; if None, they are multiples of one of the `steps`.
-    steps : the first that does not exceed the index of the node at the first mark is used.
+    steps : in descending order; the first one is used that is at most the number of cells before a mark.
 
     Raises InputError: the conformal angle does not increase along the curve; no convergence.
     """

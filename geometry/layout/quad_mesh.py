@@ -144,7 +144,7 @@ class QuadMesh:
         return tied
 
     def shifts(self, images: Indices) -> Floats:
-        """Return the vectors (k, 2) to the nodes with indices `images` (k,) from their partners."""
+        """Return the vectors (k, 2) to the nodes with indices `images` (k,) from their periodic partners."""
         known = np.array([each.shift for each in self.domain.periodic] or [(0.0, 0.0)])
         way = self.nodes[images] - self.nodes[self.places.partner[images]]
         off = np.hypot(*(way[:, None] - known).transpose(2, 0, 1))

@@ -126,8 +126,8 @@ def _metric(grid: Grid, volumes: Sequence[Floats], k: int) -> list[Floats]:
 def padded_volumes(grid: Grid) -> list[Floats]:
     """Return, for each block, the volumes (ni+1, nj+1, nk+1) of its cells and of a layer of cells around it.
 
-    Across a connection, this layer has the volumes of the neighbour's cells; elsewhere, it repeats those of
-    the nearest cells.
+    Across a connection, this layer has the volumes of the neighbour's cells; elsewhere, it repeats the
+    volumes of the nearest cells.
     """
     padded = over_blocks(_padded, grid.blocks, _nodes_of(grid))
 

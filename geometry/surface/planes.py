@@ -30,8 +30,8 @@ class Plane:
 def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
     """Return the planes normal to an axis that contain open edges and have the surface on one side.
 
-    `sides` is the result of `open_sides`. If several planes contain an edge, it counts for the one
-    with the most edges. Planes have at least `FEWEST` edges: the few of a blunt trailing edge are none.
+    `sides` is the result of `open_sides`. If several planes contain an edge, it counts for the plane
+    with the most edges. A plane has at least `FEWEST` edges; a blunt trailing edge with fewer edges is none.
     """
     if not len(sides):
         return ()

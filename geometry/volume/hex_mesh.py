@@ -64,7 +64,7 @@ class HexMesh:
 
     @cached_property
     def beyond(self) -> tuple[Indices, ...]:
-        """Node indices (ni+2, nj+2, nk+2) of each block and a layer around; -1 where it is unconnected."""
+        """Node indices (ni+2, nj+2, nk+2) of each block and of a layer around it; -1 at unconnected sides."""
         wider = tuple(np.pad(block, 1, constant_values=-1) for block in self.blocks)
 
         def outside(number: int, side: Side) -> Indices:

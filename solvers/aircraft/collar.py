@@ -88,7 +88,7 @@ def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
 
 
 def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]:
-    """Return the cell lengths on the rear and on the front side of a rectangle, for these `corner_nodes`."""
+    """Return cell lengths on the rear and front side of a rectangle; `corners` is from `corner_nodes`."""
     edge, nose = corners
     return (box.high - box.low) / (2 * edge), (box.high - box.low) / (2 * nose)
 
@@ -137,7 +137,7 @@ def collar(
 ) -> tuple[Floats, float]:
     """Return nodes (n, rows + 1, 2) between the closed loops `root` and `outer` (n, 2), and a sine.
 
-    The sine belongs to the smallest angle between lines across and lines around, before nodes are spaced.
+    This is the sine of the smallest angle between lines across and lines around, before nodes are spaced.
 
     Parameters
     ----------

@@ -126,7 +126,7 @@ class ColumnLevel:
         return replace(self, plan=plan, levels=tuple(levels))
 
     def beside_fin(self, fin: ColumnLevel) -> ColumnLevel:
-        """Return this column of a wing, with zeta at the crown halfway to that of a neighbouring `fin`."""
+        """Return this column of a wing with its crown (theta = pi) halfway in zeta between wing and `fin`."""
         zeta = self.zeta
         return replace(self, crown=zeta + 0.5 * (fin.levels[-1].hole.zeta - zeta))
 

@@ -73,8 +73,8 @@ def across_tip(
 ) -> tuple[Floats, Floats]:
     """Return the nodes `low` below and `high` beyond a tip, moved so that cells at the tip are less oblique.
 
-    In the collar `ring` (n, m), the cells around the wing, the level of the tip becomes more nearly normal to
-    the lines through it. Displacements fade to 0 at the ends of the lines. First cells stay `first` high.
+    `ring` (n, m) are indices of the lines around the wing. There, the grid surface at the tip gets more
+    nearly normal to the lines across it. Moves fade to 0 at the ends of lines. First cells stay `first` high.
     """
     level = high[0, ring]
     along, lines = wing.axis, low[-1, ring[:, 0]] - low[-2, ring[:, 0]]

@@ -26,7 +26,7 @@ def wall_note(grid: Grid, domain: Domain, names: Collection[str], first: float) 
     Parameters
     ----------
     grid : grid of blocks, or of one ring.
-    names : names of the walls with layers; empty for those of `Domain.layered_loops`.
+    names : names of the walls with layers; if empty, the loops `Domain.layered_loops` have layers.
     first : prescribed height in the domain's unit.
     """
     unnamed = (name for number in domain.layered_loops for name in domain.loops[number].names)

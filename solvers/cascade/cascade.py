@@ -65,7 +65,7 @@ class Cascade:
     share: float = 1.0
 
     def ending(self, near: tuple[float, float], centre: complex) -> Self:
-        """Return the cascade with these fields `near` and `centre`; the layers stay the same."""
+        """Return the cascade with other values of `near` and `centre`, and with its present layers."""
         return replace(self, near=near, centre=centre, marched=self.ring)
 
     @property
@@ -112,7 +112,7 @@ class Cascade:
 
     @cached_property
     def thickness(self) -> float:
-        """Thickness of the layers where the gap permits it."""
+        """Thickness of the layers, limited to a part of the narrowest gap between blades."""
         arcs = np.linspace(0.0, self.blade.length, _SAMPLES, endpoint=False)
         gap = float(wall_gaps(self.blades, self.blade, arcs).min())
         return self.share * min(THICKNESS * self.blade.length, GAP_PART * gap)
@@ -137,7 +137,7 @@ class Cascade:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """By loop index, functions of the place on the layers' outer edge whose steps should grow slowly."""
+        """Functions along the layers' outer edge whose steps should grow slowly, by the index of the loop."""
         return {BLADE: self.ring.along} if self.layers.limit else {}
 
     def factors_at(self, arcs: Floats) -> Floats:

@@ -186,8 +186,8 @@ def attached_cells(
 ) -> int:  # fmt: skip
     """Return the number of cells in the layers and in the rows to inlet and outlet.
 
-    `counts` are the cells of the chords. `layers` replaces the number of layers. The rows are at least as
-    long as `longest`, by loop index.
+    `counts` are the cells of the chords. `layers` replaces the number of layers. The rows are at
+    least as long as the lengths `longest`, whose keys are the loop indices of inlet and outlet.
     """
     along = chords.along_loops(counts).tolist()
     total = along[BLADE] * (cascade.rows_of_layers if layers is None else layers)

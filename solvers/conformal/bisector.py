@@ -16,9 +16,9 @@ SWEEPS = 3  # over the corners, which influence each other a little
 
 
 def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> tuple[Floats, Floats]:
-    """Return weights (n, corners) along the wall, and for each corner a shift of phi that they multiply.
+    """Return weights (n, corners) of the wall nodes, and shifts (corners,) of phi to be multiplied by them.
 
-    phi is the coordinate along the wall in the strip. After the shift, the first line at each corner bisects
+    phi is the coordinate along the wall in the strip. After the shifts, the first line at each corner bisects
     its angle in the plane. `wall` (n,) are nodes in the plane, counter-clockwise, `corners` indices of them.
     """
     n, step = len(wall), 2.0 * np.pi / len(wall)

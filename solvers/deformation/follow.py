@@ -53,7 +53,7 @@ class Field:
         return moved.T
 
     def transposed(self, pull: Floats) -> Floats:
-        """Return the gradient (6, k) of Σ pull · displacement by planar motions; `pull` is (m, 2)."""
+        """Return the gradient (6, k) of Σ pull · displacement for planar motions (6, k); `pull` is (m, 2)."""
         gathered = np.empty((6, len(self.areas)))
         force = np.ascontiguousarray(pull.T)
         blend_transposed(self.places, self.areas, self.near, self.points, force, gathered)
@@ -86,7 +86,7 @@ class Follow:
         return cls(table, sources, turning, slide, field, inner)
 
     def nodes_to(self, to: Floats) -> Floats:
-        """Return the new positions (n, d) of all nodes if moved nodes are at their rows of `to` (n, d)."""
+        """Return the new positions (n, d) of all nodes; `to` (n, d) has the new positions of moved nodes."""
         there = self.boundary_to(to)
         there[self.inner] += self.field.blended(self._motions(self.field, there))
         return there

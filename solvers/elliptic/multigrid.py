@@ -109,8 +109,8 @@ class Multigrid:
     def cycle(self, k: int = 0, forced: bool = False) -> float:
         """Run one V-cycle from level `k`; return the root mean square of the coarse correction, a length.
 
-        It estimates the error before the cycle; on the coarsest level it is 0. The right-hand side is that of
-        level `k` if `forced`, else 0.
+        This length estimates the error before the cycle; on the coarsest level it is 0. If not `forced`, the
+        right-hand side is 0.
         """
         if k == len(self.levels) - 1:
             self._relax_coarsest(forced, 1e-2, 10)

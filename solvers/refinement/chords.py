@@ -73,7 +73,7 @@ class Chords:
 
     @cached_property
     def multiple(self) -> Indices:
-        """Divisor (chords,) of the cell count of each chord with which a symmetric layout stays symmetric.
+        """Number (chords,) that divides the cell count of each chord, so that a layout stays symmetric.
 
         If a chord goes around a ring, it is the number of mirrors. If a mirror contains a corner in the
         middle of a wall edge of the chord, it is 2. Otherwise it is 1.

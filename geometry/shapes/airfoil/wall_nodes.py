@@ -21,7 +21,7 @@ def wall_arcs(body: Airfoil, ni: int, sampling: Sampling) -> Floats:
 
     The spacing ``conformal`` has equal angles of the conformal map (`geometry.conformal.spacing`). ``tanh``
     and ``auto`` stretch each side between its end cells. ``cosine`` is ``tanh`` if a cell size is given or
-    the edge is blunt. ``curvature`` is that of `geometry.spacing.size_field`. `le_spacing` and `te_spacing`
+    the edge is blunt. ``curvature``: see `geometry.spacing.size_field`. `le_spacing` and `te_spacing`
     are met within 1 %. Raises InputError: too few nodes, in general or for these cell lengths.
     """
     least = 7 if body.half_base else 5

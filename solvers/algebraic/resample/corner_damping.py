@@ -44,7 +44,7 @@ def fading(m: int, n: int) -> Floats:
 
 @lru_cache(maxsize=16)
 def cubic(n: int, count: int) -> Floats:
-    """Return the matrix (count, n) from second derivatives at n knots to their part of a spline."""
+    """Return the matrix (count, n) from second derivatives at n knots to spline minus linear interpolant."""
     return _weighted(n, count, 2)
 
 

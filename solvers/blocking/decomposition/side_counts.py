@@ -126,7 +126,7 @@ def _conflict(names: tuple[str, ...], given: Mapping[str, int], sums: Sums, leas
 
 
 def nearer(chords: Chords, counts: Indices, multiple: int = 1) -> Indices:
-    """Return `counts`, scaled: sides with a given cell count get nearly `multiple` times this count."""
+    """Return `counts`, scaled so that sides with a prescribed count get nearly `multiple` times it."""
     counts = counts.copy()
     for name, row in sums_of(chords).items():
         total = sum(times * counts[chord] for chord, times in row.items())

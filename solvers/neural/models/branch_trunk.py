@@ -112,7 +112,7 @@ class PODDeepONet(Architecture):
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
         """Return the mean grid (nodes, 2) and the modes of the decomposition (nodes, features, 2), by name.
 
-        If the modes are fewer than `features`, the others are 0.
+        If there are fewer than `features` modes, modes that are 0 are added.
         """
         n = len(targets)
         rows = targets.reshape(n, -1)

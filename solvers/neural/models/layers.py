@@ -25,7 +25,7 @@ def dense_shapes(name: str, sizes: Sequence[int], stacked: int | None = None) ->
 def dense(xp: Any, w: Weights, name: str, h: Any, *, last: bool = False) -> Any:
     """Return the output of the dense layers called `name` for `h` (.., in).
 
-    tanh follows each layer but the last, and the last one too if `last` is true.
+    tanh follows each layer but the last; if `last` is true, it follows each layer.
     """
     k = 0
     while f"{name}/{k}/weight" in w:

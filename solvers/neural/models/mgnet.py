@@ -60,7 +60,7 @@ class MGNet(Architecture):
         return scaled * net["fixed/size"][:, None] + net["fixed/centre"][:, None]
 
     def which(self, w: Weights, seen: Any) -> Any:
-        """Return for geometries, given by boundary points `seen`, the indices of the nearest networks."""
+        """Return the index of the training geometry nearest to each set of boundary points in `seen`."""
         return ((seen[:, None] - w["fixed/sensors"][None]) ** 2).sum(-1).sum(-1).argmin(1)
 
     def check(self, w: Weights, inputs: Weights) -> None:

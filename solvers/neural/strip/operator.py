@@ -48,9 +48,9 @@ class StripOperator(Operator):
     def residual(self, wall: Complexes, far: Complexes, hand: NDArray[np.intp] | None = None) -> Complexes:
         """Return modes (batch, 2 MODES + 1, LEVELS) of Winslow's solution minus the harmonic extension.
 
-        `wall` and `far` (batch, 2 MODES + 1) are Fourier modes of the strip's two walls. `hand` (batch,), the
-        result of `meshonet.geometry.polygon.mirror.handedness`, gives mirror images mirrored grids: -1
-        computes the mirror image, 0 makes the output symmetric. Modes that Picard steps cannot correct are 0.
+        `wall` and `far` (batch, 2 MODES + 1) are Fourier modes of the strip's two walls. `hand` (batch,) are
+        results of `meshonet.geometry.polygon.mirror.handedness`; mirrored bodies then get mirrored grids.
+        Where it is 0, the output is symmetric. Modes that Picard steps cannot correct are 0.
         """
         if self.network is None:
             return np.zeros((*wall.shape, LEVELS), complex)

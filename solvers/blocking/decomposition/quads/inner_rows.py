@@ -31,9 +31,9 @@ def with_row(mesh: QuadMesh, path: Sequence[int], *, closed: bool = False, of_wa
 
     The path goes from wall to wall or, if `closed`, from its last node back to the first. It may follow a
     wall. The side of the row opposite to the path is called the front. New nodes are on the front or, if
-    `of_wall`, on the path. The new quads are the last ones of the mesh. The first two nodes of each are on
-    the path, the others on the front. If a closed path begins at a corner with one quad, the row crosses
-    itself there, and the quad at this corner comes last.
+    `of_wall`, on the path. The new quads are the last ones of the mesh. The first two nodes of each quad
+    are on the path, its other two on the front. If a closed path begins at a corner with one quad, the row
+    crosses itself there, and the quad at this corner comes last.
     """
     half, n, count = half_edges(mesh), len(mesh.nodes), len(path)
     new = list(range(n, n + count))

@@ -202,7 +202,7 @@ def _stretch(
 
 
 def with_copies(mesh: QuadMesh, part: DomainPart) -> QuadMesh:
-    """Return a mesh of the whole domain, copied from the mesh of a part; it may not conform at mirrors."""
+    """Return a mesh of the whole domain, copied from the mesh of a part; it need not conform at mirrors."""
     nodes, (loop, arc, on_ray) = mesh.nodes.copy(), _places_in_whole(mesh, part)
     ends = np.flatnonzero(on_ray)
     nearest = np.stack([np.abs(ray.ahead_and_left(nodes[ends])[1]) for ray in part.rays]).argmin(axis=0)
