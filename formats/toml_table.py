@@ -52,7 +52,7 @@ class Table:
                 raise self.error(printable(key), "is not known", "use " + ", ".join(keys))
 
     def rows(self, key: str, least: int = 1) -> "list[Table]":
-        """Return a list of at least `least` tables."""
+        """Return the list of tables under `key`; it must have at least `least` tables."""
         rows = self.data.get(key)
         if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows) or len(rows) < least:
             many = "one or more" if least == 1 else f"{least} or more"

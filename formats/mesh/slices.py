@@ -59,9 +59,9 @@ def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> 
 
     A block is a slice if its nodes have a constant coordinate in one plane, or in each of two planes one cell
     apart. If all blocks are slices at the same positions, they are planar, and this coordinate is left out.
-    Otherwise, or in `surfaces_wanted`, a block of one plane is a surface patch, any other a volume.
-    Left-handed planar blocks and volumes are reversed along i. `places` name the blocks in messages. Raises
-    InputError if a block has no cells.
+    Otherwise, or in the context `surfaces_wanted`, a block with one plane of nodes is a surface patch; other
+    blocks are volumes. Left-handed planar blocks and volumes are reversed along i. `places` are the names of
+    the blocks in messages. Raises InputError if a block has no cells.
     """
     with np.errstate(all="ignore"):  # what is not finite is refused later, with its place
         slices = []

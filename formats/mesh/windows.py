@@ -97,9 +97,9 @@ def patch_of(face: Face, lattices: Sequence[IndexedNodes]) -> Patch | None:
 
 
 def connection_of(pair: Pair, lattices: Sequence[IndexedNodes]) -> Connection | None:
-    """Return the connection of a pair, without a motion; None if a rectangle is not on a single side.
+    """Return the connection of a pair of rectangles; None if a rectangle is not on a single side.
 
-    Raises InputError as `part_of`, and if the indices of the two rectangles do not correspond.
+    No translation or rotation is set. Raises InputError as `part_of`, and if indices do not correspond.
     """
     here, there = part_of(pair.own, lattices), part_of(pair.donor, lattices)
     if here is None or there is None:

@@ -100,7 +100,7 @@ class Body:
 
     @property
     def radius(self) -> float:
-        """The greatest radius."""
+        """Greatest radius of the body."""
         return float(self.meridian[:, 1].max())
 
     @property

@@ -66,7 +66,7 @@ def at_heights(strip: Floats, z: Floats) -> Floats:
 
 
 def on_line(line: Floats, z: Floats) -> Floats:
-    """Return points (k, 3) on a line (stations, 3) at positions `z` (k,), also extrapolated."""
+    """Return points (k, 3) at `z` (k,) on a line (stations, 3), which is extrapolated beyond its ends."""
     return monotone_cubic(line[:, 2], line, z, linear=True)
 
 

@@ -229,7 +229,7 @@ class Grid(Connected):
         return outer
 
     def joined_ranges(self) -> list[list[tuple[Side, Range]]]:
-        """Return, for each block, the connected parts of its sides: the side and the index range of each."""
+        """Return, for each block, side and index range of each part of its sides that has a connection."""
         inside: list[list[tuple[Side, Range]]] = [[] for _ in self.blocks]
         for each in self.connections:
             for block, side, span in each.ends:
@@ -240,8 +240,8 @@ class Grid(Connected):
         """Return the walls: patches of kind wall, and on a body also patches of unknown kind.
 
         If a four-sided grid of one block has no patch of kind wall, its walls are the patches of unknown kind
-        on south and north. In a grid of several blocks only patches of kind wall, or with the name of a wall,
-        are walls.
+        on south and north. In a grid of several blocks only patches of kind wall are walls. The default kind
+        of a patch follows from its name.
         """
         outer = self.outer_patches()
         body = ("south",) if self.around_body else ()

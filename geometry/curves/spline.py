@@ -159,9 +159,9 @@ def limited(
 ) -> tuple[Floats, Floats]:
     """Return slopes (intervals, 2) `start` and `stop` of each interval, limited to avoid overshoots.
 
-    The tangent at a point (n, 2) stays near the directions of its two chords. At `corners` (indices of
-    points) it has only one chord, from which it may deviate by as much as the polygon turns at the chord's
-    other end. A closed curve does not repeat its first point.
+    Tangents stay near the directions of the two chords that meet at a point. At `corners` (indices of
+    points), the curve has a tangent on each side. It deviates from the chord there by at most the angle by
+    which the polygon turns at the other end of this chord. A closed curve does not repeat its first point.
     """
     n = len(points)
     chord = rolled(points, -1) - points  # the last of an open curve is not used

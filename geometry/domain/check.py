@@ -22,9 +22,9 @@ _SAME = 1e-13
 def check_domain(domain: Domain) -> None:
     """Raise InputError, with the position, if the polygons of the loops do not bound a region.
 
-    In this order: points are repeated; a loop has no area; a loop crosses or touches itself or another loop,
-    or has the wrong orientation; a hole is outside the outer loop or inside another hole. Splines are checked
-    as polygons through their points.
+    Checks in this order: points are repeated; a loop has no area; a loop crosses or touches itself or another
+    loop, or has the wrong orientation; a hole is outside the outer loop or inside another hole. Splines are
+    checked as polygons through their points.
     """
     check_extent(domain.extent)
     for number, loop in enumerate(domain.loops):

@@ -111,7 +111,7 @@ def _jaw(opening: float) -> Corners:
 
 
 def semicircle(centre: float, ni: int, nj: int) -> Boundary:
-    """Case 4: return a channel, 2 by 1, with a semicircle of radius 0.2 on its floor, x = `centre`."""
+    """Case 4: return a channel, 2 by 1, with a semicircle of radius 0.2 on its floor at x = `centre`."""
     radius, length = 0.2, 2.0
     first, arc = centre - radius, np.pi * radius
     whole = length - 2 * radius + arc

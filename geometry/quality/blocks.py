@@ -66,7 +66,7 @@ def block_figures(grid: Grid, quality: Quality | None = None, run: Lines | None 
     """Return the figures of a multi-block grid.
 
     For volumes, `quality` is the quality of the grid if it has been measured. Percentiles of a volume are
-    computed unless `quality` is given without them. `run` has growth and bend, if they are known already.
+    computed unless `quality` is given without them. `run` has growth and turning, if known already.
     """
     if grid.form == "volume":
         from meshonet.geometry.quality.volumes import measure_volumes

@@ -38,7 +38,7 @@ FIGURES: Mapping[str, str] = MappingProxyType({
 
 @dataclass(frozen=True)
 class Figure:
-    """A value; its node or cell `at` ([block,] i, j[, k]), and the direction `along` of its grid line."""
+    """A value with its node or cell `at` ([block,] i, j[, k]) and the direction `along` of its grid line."""
 
     value: float
     at: tuple[int, ...] | None = None
@@ -77,7 +77,7 @@ class Figures:
 
     @cached_property
     def blocks(self) -> BlockFigures:
-        """Blocks, irregular vertices, corner angles and growth and bend of grid lines."""
+        """Numbers of blocks and irregular vertices, corner angles, growth and turning of grid lines."""
         return block_figures(self.grid, self.quality)
 
     @cached_property

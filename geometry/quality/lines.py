@@ -43,7 +43,7 @@ class Lines:
 
 @dataclass(frozen=True)
 class BlockLines:
-    """Growth and bend of grid lines along a direction of a block, inside it or across one of its sides."""
+    """Growth and turning of grid lines along a direction of a block, inside it or across one of its sides."""
 
     block: int
     axis: int
@@ -53,7 +53,7 @@ class BlockLines:
 
 
 def lines(grid: Grid, nodes: Vertices, *, all_measures: bool = True) -> Lines:
-    """Return growth and bend of the grid lines of planar blocks or surface patches.
+    """Return growth and turning of the grid lines of planar blocks or surface patches.
 
     `nodes` are the vertices of the grid. Without `all_measures`, bend and percentiles are left out.
     """
@@ -63,7 +63,7 @@ def lines(grid: Grid, nodes: Vertices, *, all_measures: bool = True) -> Lines:
 
 
 def lines_of(grid: Grid, parts: list[BlockLines], *, along: bool = True, places: bool = True) -> Lines:
-    """Return growth and bend of all grid lines in `parts`.
+    """Return growth and turning of all grid lines in `parts`.
 
     With `along`, percentiles are computed for each direction and wall. With `places`, they are computed for
     nodes inside blocks and on sides.
@@ -148,7 +148,7 @@ def bends(nodes: Floats) -> Floats:
 
 
 def solid_lines(grid: Grid, *, percentiles: bool = True) -> Lines:
-    """Return growth and bend of the grid lines of volumes; percentiles are computed in single precision."""
+    """Return growth and turning of grid lines of volumes; percentiles are computed in single precision."""
     numbers, nodes = range(len(grid.blocks)), [block.nodes[..., 0].size for block in grid.blocks]
     inside = over_blocks(lambda number: _solid_inside(grid, number, percentiles), numbers, nodes)
     nodes = [2 * math.prod(stop - start + 1 for start, stop in each.range) for each in grid.connections]

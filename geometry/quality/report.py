@@ -34,7 +34,7 @@ Gates: TypeAlias = str | Sequence[str | Gate]  # gates, or their texts as in `pa
 
 @dataclass(frozen=True)
 class Comparison:
-    """Distances of nodes from their places in a reference grid, and ratios of angles to the reference's."""
+    """Distances of nodes from their places in a reference grid, and ratios of the angles of both grids."""
 
     difference: Difference
     folded: int  # number of folded cells of the reference

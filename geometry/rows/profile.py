@@ -90,7 +90,7 @@ class BladeProfile:
         return made
 
     def aligned(self, places: Floats) -> Self:
-        """Return the profile with u redefined so that its corners are at `places` (c,)."""
+        """Return the profile with its coordinate u redefined so that its corners are at u = `places` (c,)."""
         made, own = copy(self), self.corner_places()
         u = np.concatenate([_ENDS, places])
         way = np.concatenate([self._stops[1], np.interp(own, *self._stops)])
@@ -138,7 +138,7 @@ class BladeProfile:
         )
 
     def sharpness(self, trailing: bool) -> tuple[float, float]:
-        """Return the largest turn at an edge in radians, and the two largest as a fraction of all there."""
+        """Return the largest turn at an edge in radians, and the sum of the two largest over that of all."""
         bend = np.abs(turning(self.curve.points, closed=True))
         edge = self.trailing if trailing else self.leading
         own = np.sort(bend[np.abs(self._off(self.curve.knots, edge)) < self._reach])

@@ -95,7 +95,7 @@ class Section:
 
 
 class Fade(NamedTuple):
-    """Weights (n,) of nodes: 1 for the section's twist and chord, 0 for no twist and the length `chord`."""
+    """Weights (n,) of nodes: 1 for twist and chord of the section, 0 for no twist and the given `chord`."""
 
     weight: Floats
     chord: float

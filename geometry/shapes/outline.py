@@ -57,7 +57,7 @@ class Outline:
 
     @property
     def topology(self) -> Topology:
-        """What ``auto`` means: ``quad`` if there are four or more convex corners, otherwise ``o``."""
+        """Topology for ``auto``: ``quad`` if there are four or more convex corners, otherwise ``o``."""
         return "quad" if self.corners is not None or len(self._sharp()) >= 4 else "o"
 
     def boundary(self, sampling: Sampling) -> Boundary:

@@ -41,9 +41,9 @@ def arcs_by_curvature(
 
     The cell size h is a smooth minimum, 1/h⁴ = Σ 1/hₖ⁴, of four sizes. Two start at the trailing and the
     leading edge and increase by `GROWTH` times the distance. One is `TURN` / curvature, with a slope of at
-    most `GROWTH`. One is a largest size, for which the integral of ds/h is the number of cells. If cells are
-    too few, growth first rises up to `HURRY` times if `hurried` (C grids). Next, sizes by curvature and at
-    the leading edge increase. When they exceed `_SCARCE` times their values, growth rises too. Last, all
+    most `GROWTH`. The last is a constant, with which the integral of ds/h is the number of cells. If cells
+    are too few, growth first rises up to `HURRY` times if `hurried` (C grids). Next, sizes by curvature and
+    at the leading edge are multiplied by a factor. When it exceeds `_SCARCE`, growth rises too. Last, all
     sizes are scaled. With `based`, sizes are also limited to `_LONGEST` mean cells, and growth from the
     trailing edge rises first, up to `RUSH` times, unless `at_edge` is given.
 

@@ -12,8 +12,8 @@ SAME = 1e-6  # largest relative difference of heights that count as the requeste
 def first_cell(y_plus: float, reynolds: float, chord_fraction: float = 0.5) -> float:
     """Return the distance from the wall, in chords, at which y+ has the value `y_plus`.
 
-    It is that of a turbulent flat plate, at x = `chord_fraction` chords behind its leading edge: y+ = y
-    u_τ/ν, u_τ/U = √(C_f/2), C_f = (2 log₁₀ Re_x - 0.65)^-2.3 (`SOURCE`). `reynolds` is that of the chord.
+    The wall is a flat plate with turbulent flow, x = `chord_fraction` chords behind its leading edge: y+ = y
+    u_τ/ν, u_τ/U = √(C_f/2), C_f = (2 log₁₀ Re_x - 0.65)^-2.3 (`SOURCE`). `reynolds` is based on the chord.
     Raises InputError: a value out of range, or x too small for a turbulent boundary layer.
 
     >>> f"{first_cell(1.0, 6e6):.3g}"

@@ -38,7 +38,7 @@ def without_poles(
     """Return the patches without poles, for each of them the index of a patch in `patches`, and notes.
 
     A pole is a side of a patch (ni, nj, 3) that is a single point. A core patch in place of each pole is
-    appended; its index is that of a given patch at the pole. Without `replace` nothing is done. Raises
+    appended; its index is that of a given patch at this pole. Without `replace` nothing is done. Raises
     InputError: too few cells around a pole, or an odd number.
     """
     out, owners, notes = list(patches), list(range(len(patches))), []

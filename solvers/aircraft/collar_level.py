@@ -166,7 +166,7 @@ class CollarLevel:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Lengths in s of the first cells outside the rectangle, before and behind it."""
+        """Lengths of the first cells before and behind the rectangle, as differences of s (`BodyMap`)."""
         behind, before = outer_cells(self.hole.box, (self.plan.edge, self.plan.nose))
         unit = float(self.hole.scale[0])
         ahead, aft = (math.sqrt(a * b) for a, b in ((self.last[0], before), (self.last[3], behind)))
@@ -189,7 +189,7 @@ class CollarLevel:
 
     @cached_property
     def low_and_top(self) -> tuple[Floats, Floats]:
-        """Theta of the nodes from the keel up to the rectangle, and from the rectangle up to the crown."""
+        """Theta of the nodes from keel to rectangle (around the collar), and from rectangle to crown."""
         out = []
         for cells, way, step in zip(
             (self.plan.low, self.plan.top), self.hole.bands, self.beside, strict=True

@@ -20,7 +20,7 @@ Side: TypeAlias = tuple[Floats, Floats]
 def lines_between(
     points: Points, begin: Floats, end: Floats, sizes: tuple[Floats, Floats], cells: int
 ) -> Floats:
-    """Return nodes (n, cells + 1, 3), s, theta, zeta (`BodyMap`), on lines from `begin` to `end` (n, 3).
+    """Return s, theta, zeta (n, cells + 1, 3) (`BodyMap`) of nodes on lines from `begin` to `end` (n, 3).
 
     `sizes` are the differences in s (n,) over the first and over the last cell. Between them, physical cell
     lengths change smoothly. `points` maps nodes to x, y, z.

@@ -50,7 +50,7 @@ class AircraftPlan:
 
     @classmethod
     def of(cls, aircraft: Aircraft, request: AircraftRequest, space: BodyMap, around: int) -> Self:
-        """Return the plan with `around` nodes around each wing; the default growth is `GROWTHS[0]`.
+        """Return the plan with `around` nodes around each wing; the default growth ratio is `GROWTHS[0]`.
 
         Raises InputError if a wing does not begin inside the body or does not leave it, if wings are too
         close to each other, or if a root is too close to keel or crown.

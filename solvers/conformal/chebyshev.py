@@ -47,7 +47,7 @@ def barycentric(nodes: Floats, weights: Floats, x: Floats) -> Floats:
 class Panels(NamedTuple):
     """Consecutive intervals of eta: panel k covers the grid levels from ``ends[k]`` to ``ends[k + 1]``.
 
-    `eta` (panels NODES,) are the points of the panels. The value at a level is the product of values at the
+    `eta` (panels * NODES,) are the points of the panels. The value at a level is the product of values at the
     points of its panel and its column of `matrix` (NODES, levels). Without panels, `ends` has one entry.
     """
 

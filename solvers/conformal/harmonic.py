@@ -13,7 +13,7 @@ FAR = 37.0  # exp(-37) is the precision of a double: modes that have decayed so 
 
 
 def extend(boundary: Boundary) -> Floats:
-    """Return the nodes (ni, nj, 2) of the harmonic extension of a `boundary`, whose own nodes are kept.
+    """Return the nodes (ni, nj, 2) of the harmonic extension of a `boundary`; boundary nodes are exact.
 
     Each side adds a series with the Fourier coefficients b_k or c_k of its nodes; eta is 0 at this side. a is
     height / length of a rectangle, T is log(outer length / inner length) of a ring::

@@ -47,7 +47,7 @@ class Field:
         return cls(sources, places, np.ascontiguousarray(areas[sources]), near, where)
 
     def blended(self, motions: Floats) -> Floats:
-        """Return the displacements (m, d) of the points; `motions` (d + d², k) are a result of `affine`."""
+        """Return the displacements (m, d) of `points`; `motions` (d + d², k) are a result of `affine`."""
         moved = np.empty_like(self.points)
         blend_motions(self.places, self.areas, motions, self.near, self.points, thread_count(), moved)
         return moved.T
@@ -130,7 +130,7 @@ def _near(moved: Floats, fixed: Floats) -> float:
 
 
 def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
-    """Return the unit normal (d,) of a side that is flat, also with the nodes `there` (n, d); else None."""
+    """Return the unit normal (d,) of a side; None if it is bent before or after nodes move to `there`."""
     nodes, after = (each[piece.numbers.ravel()] for each in (table.nodes, there))
     centre = nodes.mean(axis=0)
     _, size, ways = singular_values(nodes - centre)

@@ -30,7 +30,7 @@ class Factors:
         return np.asarray(product(self.along.T, self.across))
 
     def kept(self, i: Indices, j: Indices) -> Factors:
-        """Return the function on only those nodes whose indices are in `i` and `j`."""
+        """Return the function only at the nodes whose indices are in `i` and `j`."""
         return Factors(np.ascontiguousarray(self.along[:, i]), np.ascontiguousarray(self.across[:, j]))
 
     def scaled(self, part: float) -> Factors:
@@ -66,7 +66,7 @@ def thomas_middlecoff(boundary: Boundary) -> Controls:
 
     On an edge with arc length s, φ = -(x_ξ·x_ξξ)/(x_ξ·x_ξ) = -(ln s_ξ)_ξ. This assumes that grid lines leave
     the edge straight and orthogonally. Inside, φ and ψ are interpolated linearly between opposite edges. For
-    an O boundary, ψ is that of the cut. Thomas and Middlecoff, AIAA J. 18 (1980) 652-656.
+    an O boundary, ψ is computed on the cut. Thomas and Middlecoff, AIAA J. 18 (1980) 652-656.
     """
     periodic = boundary.periodic
     up = np.linspace(0.0, 1.0, boundary.nj)

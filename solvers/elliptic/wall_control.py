@@ -78,7 +78,7 @@ class ControlledEdge:
         return Controls(Factors(fade[None], across), Factors(fade[None], along))
 
     def resample(self, coarse: Self) -> None:
-        """Interpolate the sources from those of `coarse`, the same edge on a coarser grid."""
+        """Interpolate the source terms from `coarse`, the same edge on a coarser grid."""
         n, m = self.sources.shape[1], coarse.sources.shape[1]
         place, few = np.linspace(0.0, 1.0, n), np.linspace(0.0, 1.0, m)
         factors = (m - 1) / (n - 1), (coarse._count - 1) / (self._count - 1)

@@ -37,7 +37,7 @@ class HexWeights:
 
     @property
     def of_cubes(self) -> bool:
-        """Whether these are the weights of the functional of cubes."""
+        """Whether the weights select the functional of cubes, which is least for cubic cells."""
         return self.power == 0
 
 

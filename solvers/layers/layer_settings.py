@@ -46,7 +46,7 @@ class LayerSettings:
 
     @classmethod
     def limited(cls, first: float, limit: float, **others: Any) -> Self:
-        """Return settings with growth ratios of at most `limit`, also outside layers; `others` are fields."""
+        """Return settings with growth ratios up to `limit`, also outside layers; `others` are more fields."""
         return cls(first, math.exp(NOMINAL * math.log(limit)), limit=limit, **others)
 
     def at(self, names: Collection[str]) -> Self:
@@ -126,6 +126,6 @@ def exact(lines: Floats, first: float | Floats) -> None:
 
 
 def spaced(lines: Floats, law: Callable[[Floats], Floats]) -> Floats:
-    """Return new nodes (k, n, 2) on `lines` (k, m, 2), at arc lengths that `law` gives for line lengths."""
+    """Return new nodes (k, n, 2) on `lines` (k, m, 2); `law` computes their arc lengths from line lengths."""
     arc = arc_lengths(lines)
     return sampled(lines, arc, law(arc[:, -1]))

@@ -59,7 +59,7 @@ class Sequenced(Wrapper):
     levels: int
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the solution of a boundary; an initial grid `start` must have the coarsest node counts."""
+        """Return the solution of a boundary; `start` is an initial grid with the coarsest node counts."""
         return solve_refined(boundary, self.inner, self.levels, start)
 
 

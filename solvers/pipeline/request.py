@@ -131,7 +131,7 @@ class ManyBlocks(Request):
 
     @property
     def names_walls(self) -> tuple[str, ...]:
-        """The given option that selects walls with layers by name, such as ``walls``; () if there is none."""
+        """Name of the option by which the user names the walls that get layers; () without such an option."""
         if self.by_wall:
             return ("first_cell" if self.y_plus is None else "y_plus",)
         return ("walls",) if self.walls else ()

@@ -161,7 +161,7 @@ class Chords:
         """Return counts (chords,) for cells of the given size.
 
         The count of a chord is the rounded geometric mean of length / size over its edges. It is at least
-        that of `least` (chords,), by default the property of this name.
+        its count in `least` (chords,), by default in the property `least`.
         """
         wanted = log(np.maximum(self.lengths / size, 1e-9))
         mean = np.bincount(self.chord, wanted, self.count) / np.bincount(self.chord, minlength=self.count)

@@ -89,7 +89,7 @@ class SizeMetric:
     def gradual(self, mesh: QuadMesh, sweeps: int = SWEEPS) -> Floats:
         """Return the target lengths (e,) of the edges of a mesh, smoothed over neighbouring edges.
 
-        Without this, they would jump halfway between walls.
+        Without smoothing, target lengths would jump halfway between walls.
         """
         return _evened(self.edges(mesh), mesh, sweeps)
 

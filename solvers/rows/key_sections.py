@@ -103,7 +103,7 @@ def planned(
     Parameters
     ----------
     coarse : result of `coarse_section` for the middle section; None: it is computed.
-    longest : greatest lengths of the rows to inlet and outlet, by loop index.
+    longest : by loop index, the greatest length in any section of the straight rows at inlet and outlet.
     wake : as in `SectionPlan`.
     gaps : whether the blade ends in a gap at the hub, and at the casing.
     """
@@ -148,7 +148,7 @@ class NextSections:
         self._problem = _problem(plan, section.plane, section.layout.mesh)
 
     def of(self, before: KeySection, plane: SectionPlane, columns: LayerColumns | None = None) -> KeySection:
-        """Return the section in `plane`, made from the section `before`; None as `columns` computes layers.
+        """Return the section in `plane`, made from the section `before`; None computes new `columns`.
 
         Raises NoValidGridError if cells stay folded.
         """

@@ -41,11 +41,11 @@ def coarse_section(plane: SectionPlane, *, early: bool = True) -> Layout:
 def middle_section(
     planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], coarse: Layout | None = None
 ) -> Layout:
-    """Return the middle section of `planes`, with layers and about `cells` cells.
+    """Return the layout of the middle one of the sections `planes`, with layers and about `cells` cells.
 
     Parameters
     ----------
-    longest : greatest lengths, in any section, of the rows to inlet and outlet, by loop index.
+    longest : by loop index, the greatest length in any section of the straight rows at inlet and outlet.
     coarse : result of `coarse_section`; None: it is computed.
 
     Raises NoValidGridError if cells are folded.

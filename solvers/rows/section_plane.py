@@ -88,7 +88,7 @@ class SectionPlane:
 
     @cached_property
     def edges(self) -> Floats:
-        """(2, 2) m' and theta of the leading edge and of the trailing edge."""
+        """Coordinates m' and theta (2, 2) of the leading edge and of the trailing edge."""
         return self.cascade.blade.at(self.wall_arcs(np.array([0.0, 0.5])))
 
     @property
@@ -104,7 +104,7 @@ class SectionPlane:
         return slope * (self.map.length - float(self.edges[1, 0]))
 
     def ending(self, near: tuple[float, float], thickest: float) -> Self:
-        """Return the section with straight rows of cells beyond `near` pitches upstream and downstream.
+        """Return the section; beyond `near` pitches upstream and downstream, its rows of cells are straight.
 
         The conformal map has its centre midway between the places u = `thickest` and u = 1 - `thickest`.
         """

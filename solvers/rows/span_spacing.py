@@ -147,7 +147,7 @@ class LineArcs:
 
     @classmethod
     def through(cls, samples: Floats) -> Self:
-        """Return the relation for n lines, from points (k, n, 3) at the parameters ``key_heights(k)``."""
+        """Return the arc lengths of n lines through points (k, n, 3) at the parameters ``key_heights(k)``."""
         speed = norms(slopes_at_keys(samples))
         arcs = integrals_at_keys(speed)
         lengths, wanted = arcs[-1], key_heights(len(samples))[:, None]

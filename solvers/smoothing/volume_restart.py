@@ -12,7 +12,7 @@ _MOST, _SMALL = 500, 1e-8  # largest number of iterations, and the relative resi
 
 
 def harmonic(mesh: HexMesh, moves: Bools) -> Floats:
-    """Return the nodes (n, 3) of a mesh; those of the mask `moves` (n,) go to the mean of their neighbours.
+    """Return the nodes (n, 3) of a mesh; nodes in the mask `moves` (n,) go to the mean of their neighbours.
 
     Their coordinates thus satisfy Laplace's equation on the graph of edges. All other nodes stay.
     """

@@ -81,7 +81,7 @@ class CrossSection:
 def planned(
     sections: Sequence[CrossSection], growth: float = GROWTH, rows: int | None = None, *, radial: bool = False
 ) -> FiveBlocks:
-    """Return one division for all sections: cells grow by at most `growth`, or as little as possible.
+    """Return one division for all sections: its growth ratio is at most `growth` if possible, else least.
 
     `rows` is the number of rows of the ring, by default the smallest sufficient one. `radial`, for circles,
     aligns the lines of the ring with radii.

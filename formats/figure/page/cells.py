@@ -37,7 +37,7 @@ class Scale:
 
 
 def scale_of(values: Floats) -> Scale:
-    """Return the scale for values (n,)."""
+    """Return the colour scale for `values` (n,)."""
     low, high = float(values.min()), float(values.max())
     start, stop = (float(value) for value in np.percentile(values, (1, 99)))
     log = low > 0 and stop > _RATIO * start

@@ -137,7 +137,7 @@ def nearer(chords: Chords, counts: Indices, multiple: int = 1) -> Indices:
 
 
 def check_sides(layout: Layout) -> None:
-    """Raise SolverError if periodic sides cannot have equal cell counts, or have wrong cells at an end."""
+    """Raise SolverError if periodic sides cannot match: equal counts, and the right valence at their ends."""
     mesh = layout.mesh
     if not mesh.domain.periodic:
         return

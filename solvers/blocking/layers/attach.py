@@ -31,10 +31,10 @@ class Rows:
 
 
 def attach(layout: Layout, domain: Domain, rows: Sequence[Rows]) -> Layout:
-    """Return the layout extended by `rows`: each block side on one of their loops gets a new block.
+    """Return the layout extended by `rows`: each block side on a loop of `rows` gets a new block.
 
-    The loops of the extended `domain` are those of the layout, except that the loops of `rows` run through
-    the ends of their lines.
+    `domain` is the domain of the result, in which the loops of `rows` run through the ends of the new lines.
+    Its other loops are as in the layout.
     """
     mesh = layout.mesh
     nodes, places = [mesh.nodes], [replace(mesh.places, loop=mesh.places.loop.copy())]

@@ -47,11 +47,11 @@ class GrowthLines:
     def from_walls(
         cls, layout: Layout, walls: Bools, limit: float, elsewhere: float, sliding: Bools | bool = False
     ) -> Self:
-        """Return all pairs of edges of a layout; limits (logarithms of ratios) depend on the position.
+        """Return all pairs of consecutive edges, with limits (logarithms of ratios) that depend on position.
 
         The limit is `limit` across block sides, and along grid lines that start at `walls`, a mask (n,) of
-        nodes. It is `elsewhere` for other pairs, and at irregular vertices. In blocks beside a wall, it is
-        raised to the ratio on the wall for pairs parallel to the wall, unless wall nodes are `sliding` (n,).
+        nodes. It is `elsewhere` for other pairs, and at irregular vertices. In blocks beside a wall, pairs
+        parallel to the wall get the ratio on the wall if it is larger, except for `sliding` wall nodes (n,).
         """
         mesh, pairs = layout.mesh, cls.of(layout.mesh, elsewhere)
         nodes = pairs.nodes

@@ -70,7 +70,7 @@ class RowSizes:
     def thickness(self, scale: float, settings: LayerSettings) -> Floats:
         """Return the thickness (n,) of the layers, whose cells grow until they are square or fill the gap.
 
-        In all methods, `scale` is a factor on the cell lengths along the wall.
+        `scale` is a factor on the cell lengths along the wall.
         """
         last = scale * self.length * settings.growth
         full = np.maximum((last - self.first) / (settings.growth - 1.0), THINNEST * self.first)

@@ -88,7 +88,7 @@ class WallLayers:
 
     @cached_property
     def mirrors(self) -> tuple[Mirror, ...]:
-        """Mirrors of the domain outside the layers; none if the whole domain has none."""
+        """Mirror symmetries of the region outside the layers; empty if the domain is not symmetric."""
         return mirrors_of(self.rest) if mirrors_of(self.domain) else ()
 
     def of_ring(self, number: int) -> LayerSettings:

@@ -73,7 +73,7 @@ def march_graph(
     ----------
     planes, in_plane : planes of symmetry, and for each a mask (p, k) of the open edges in it.
     hollow : (n,) distances from concave edges (`meshonet.geometry.surface.hollows`).
-    splay : ghosts beyond free edges are 1 + `splay` times as far away as the opposite node (`Seen.opposite`).
+    splay : ghost nodes beyond free edges are 1 + `splay` times as far away as the nodes `Seen.opposite`.
     boost : additional smoothing at irregular nodes.
     """
     n = len(surface.nodes)

@@ -64,7 +64,7 @@ class Adjoint(FirstDerivative):
 
     @staticmethod
     def forward(equations: Equations, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
-        """Return the derivative (batch, 2, ni, nj), which is zero at inner nodes."""
+        """Return the derivative (batch, 2, ni, nj) of a functional by boundary nodes; 0 at inner nodes."""
         (result,) = in_parts(
             lambda *part: (equations.adjoint(*part),),
             equations.most(nodes),

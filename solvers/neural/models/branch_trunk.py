@@ -19,8 +19,8 @@ from meshonet.solvers.neural.samples import Samples
 class MeshONet(Architecture):
     """The neural operator of the MeshONet paper with the authors' settings; 54,482 parameters.
 
-    ``x = branch_x(s_x) . trunk(lift(xi, eta)) + b``, where s_x has the x coordinates of boundary points; the
-    same for y with the same trunk. Its last layer ends with tanh. Xiao et al., arXiv 2501.11937.
+    ``x = branch_x(s_x) . trunk(lift(xi, eta)) + b``, where s_x has the x coordinates of boundary points. y
+    has its own branch and the same trunk. The trunk ends with tanh. Xiao et al., arXiv 2501.11937.
     """
 
     interior: ClassVar[float] = 900.0

@@ -79,9 +79,9 @@ def answered(z: Any, unit: Any, network: Moves, shares: Moves | None, xp: Any, a
     """Return complex grids `z` (batch, n, n), moved by Picard steps and then by a network.
 
     With `around`, `z` are O grids unrolled to strips (batch, m + 1, n). `unit` has the grids at unit size,
-    and factors (batch, 1, 1) that undo the scaling. `network` returns displacements from the grids and the
-    last Picard step. `shares` returns the fractions (batch, 1, 1) of displacements to apply, from grids and
-    displacements; None applies all. `xp` is the module of the arrays, numpy or torch.
+    and factors (batch, 1, 1) that undo the scaling. `network` computes displacements from the grids and the
+    last Picard step. `shares` computes from grids and displacements which fraction (batch, 1, 1) of the
+    displacements is applied; None applies all. `xp` is the module of the arrays, numpy or torch.
     """
     sized, back = unit
     near, step = approach(sized, xp, around)
@@ -100,7 +100,7 @@ def nearer(z: Any, unit: Any, xp: Any, around: bool = False) -> Any:
 
 
 def in_frame(z: Any, xp: Any) -> tuple[Any, Any]:
-    """Return complex grids `z` scaled as in `encoding.frame`, and factors (batch, 1, 1) that undo this."""
+    """Return complex grids `z` turned and scaled to area 1, and factors (batch, 1, 1) that undo this."""
     middle, factor = (value[:, None, None] for value in frame(z, xp))
     return times(z - middle, factor), factor.conj() / (factor.real**2 + factor.imag**2)
 

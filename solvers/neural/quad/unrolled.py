@@ -40,9 +40,9 @@ def unrolled(z: Any, centres: Any, xp: Any = np) -> tuple[Any, Any]:
 
 
 def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any = np) -> tuple[Any, Any, Any]:
-    """Unroll `walls` (batch, m + 1, n); return the strips, their centres (batch,) and the mask of `unrolled`.
+    """Return the strips of `walls` (batch, m + 1, n), their centres (batch,), and a mask (see `unrolled`).
 
-    The centre is the centroid of the body's closed curve in `wall` (batch, ni), if `walls` wind once around
+    The centre is the centroid inside the body's closed curve `wall` (batch, ni), if `walls` wind once around
     it. Otherwise it is the point that `inside` returns for the curve ``walls[k, :-1, 0]``.
     """
     centres = middles(wall[:, :-1], xp)

@@ -23,9 +23,9 @@ class Parametrisation:
 
         |grad u - s (cos theta, sin theta)|^2 + |grad v - s (-sin theta, cos theta)|^2
 
-    Along each wall, u or v is constant and one unknown. Differences of w along one side of the cut are those
-    along the other side, rotated by a multiple of 90 degrees (Lagrange multipliers). This is the map of
-    Bommes, Zimmer, Kobbelt (ACM Trans. Graph. 28 (2009) 77) without rounding translations to integers.
+    Along each wall, u or v is constant, with an unknown value. Differences of w along one side of the cut
+    equal the differences along the other side, rotated by a multiple of 90 degrees (Lagrange multipliers).
+    This is the map of Bommes, Zimmer, Kobbelt (ACM Trans. Graph. 28 (2009) 77) without integer rounding.
 
     Parameters
     ----------

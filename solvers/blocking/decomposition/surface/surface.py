@@ -69,7 +69,7 @@ class Triangulation:
 
     @cached_property
     def gradients(self) -> Complexes:
-        """(t, 3) for each corner, the gradient of the linear function that is 1 there, 0 at other corners."""
+        """Gradients (t, 3) of the linear functions that are 1 at a corner and 0 at the two other corners."""
         return np.asarray(times(1j, self.edges[:, NEXT]) / (2.0 * self.areas[:, None]))
 
     @cached_property
