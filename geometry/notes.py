@@ -40,5 +40,5 @@ def change_facts(notes: Iterable[str]) -> dict[str, str]:
 
 
 def advice_in(notes: Iterable[str]) -> tuple[str, ...]:
-    """Return the notes about the settings."""
+    """Return the notes that are about settings (`Advice`)."""
     return tuple(str(note) for note in notes if isinstance(note, Advice))

@@ -104,7 +104,7 @@ def _blocks_of_nodes(stream: _Stream) -> NumberedNodes:
 def elements(
     section: bytes, version: str, binary: bool, order: str, tags: dict[tuple[int, int], int]
 ) -> Elements:
-    """Return the elements in ``$Elements``; `tags` are the physical groups by (dimension, tag) of entity."""
+    """Return the elements in ``$Elements``; `tags` has the physical group of each entity (dimension, tag)."""
     stream = _Stream(section, binary, order)
     if version == "4.1":
         blocks = _blocks_of_elements(stream, tags)

@@ -40,7 +40,7 @@ def matched(connection: Connection, blocks: Sequence[Block]) -> Connection:
 
 
 def like_others(connection: Connection, motions: list[Motion]) -> Connection:
-    """Return a periodic connection; if its motion nearly equals one of `motions`, that one replaces it.
+    """Return a periodic connection; if one of `motions` nearly equals its motion, it replaces this motion.
 
     Otherwise its motion is added to `motions`. Nearly equal motions thus become bitwise equal.
     """

@@ -20,9 +20,9 @@ _MOST_REPEATED = 4  # largest plausible number of values per byte of the file, w
 
 
 def candidates(data: bytes, wanted: Options = frozenset()) -> list[Candidate]:
-    """Return all layouts with the count of numbers in a text file; stored by planes only if `wanted`.
+    """Return all layouts that a text file with this count of numbers can have.
 
-    Raises InputError if a word is not a number, or if no layout fits.
+    Layouts by planes only if `wanted` has ``planes``. Raises InputError: not only numbers; no layout fits.
     """
     values = _numbers(data)
 

@@ -98,7 +98,7 @@ class SurfaceWing:
 
     @cached_property
     def arcs(self) -> Floats:
-        """Width of each strip in chords (strips,), measured along the section at half span."""
+        """Length of each strip's part of the section at half span, in chords (strips,)."""
         z = self.z[[_LEVELS // 2]]
         lengths = [float(norms(np.diff(at_heights(strip, z)[0], axis=0)).sum()) for strip in self.strips]
         return np.array(lengths) / self.sizes(z)[0]

@@ -78,8 +78,8 @@ def joined_labels(count: int, pairs: Sequence[tuple[Indices, Indices]]) -> Indic
 def with_equal_nodes(blocks: Sequence[Block], connections: Sequence[Connection]) -> tuple[Block, ...]:
     """Return `blocks` with the nodes that `connections` join made bitwise equal.
 
-    Joined nodes get the coordinates of the first of them. Nodes of the second side of a periodic pair get
-    those of the first side, moved by the periodic motion.
+    Joined nodes get the coordinates of the first of them. The nodes of the second side of a periodic pair
+    become the nodes of the first side, moved by the periodic motion.
     """
     if not connections:
         return tuple(blocks)

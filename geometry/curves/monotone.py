@@ -19,8 +19,8 @@ def inner_slopes(h: Floats, delta: Floats) -> Floats:
 def monotone_cubic(x: Floats, values: Floats, at: Floats, *, linear: bool = False) -> Floats:
     """Return values (m, ...) at `at` (m,) of the curve through `values` (n, ...) at ascending `x` (n,).
 
-    It is piecewise cubic, monotone in each interval and flat at extrema, with end slopes of parabolas. With
-    `linear` it is piecewise linear.
+    The curve is piecewise cubic, monotone in each interval and flat at extrema. With `linear` it is piecewise
+    linear.
     """
     i, t, _ = piece_at(x, at, values.ndim)
     low, high = values[i], values[i + 1]

@@ -147,7 +147,7 @@ class BladeSurface:
         return np.asarray(turned - mean - away * self.pitch)
 
     def lines(self, u: Floats) -> CubicTable:
-        """Return splines of s, theta, h along the span at places `u` (m,), by the mean h of the profiles."""
+        """Return splines of s, theta, h along the span, at places `u` (m,), over the mean h of profiles."""
         values = np.stack([profile.at(u) for profile in self.profiles])
         values[..., 1] += self._turns[:, None]
         return CubicTable(values, self.knots)
@@ -172,7 +172,7 @@ class BladeSurface:
         return out
 
     def section(self, h: float, u: Floats) -> Floats:
-        """Return s and theta (m, 2) at places `u` (m,) around the blade and at the height `h`."""
+        """Return s and theta (m, 2) (see `Channel`) at places `u` (m,) around the blade, at height `h`."""
         return self.crossings(self.lines(u), np.full(len(u), h))
 
     @property

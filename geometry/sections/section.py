@@ -90,7 +90,7 @@ class Section:
 
     @property
     def placement(self) -> Floats:
-        """Chord, twist in radians, x, y and both values of `about` (6,), which a stack interpolates in z."""
+        """Six numbers that a stack interpolates in z: chord, twist in radians, x, y, two numbers `about`."""
         return np.array([self.chord, math.radians(self.twist), self.x, self.y, *self.about])
 
 

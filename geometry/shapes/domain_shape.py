@@ -60,7 +60,7 @@ class DomainShape:
         return self.domain.notes
 
     def noted(self, *notes: str) -> Self:
-        """Return the shape with `notes` added to its own."""
+        """Return the shape with additional `notes`."""
         return replace(self, domain=replace(self.domain, notes=(*self.notes, *notes)))
 
     def boundary(self, sampling: Sampling) -> Boundary:

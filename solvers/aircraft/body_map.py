@@ -54,7 +54,7 @@ class BodyMap:
         self._arcs = monotone_cubic(turns, body.arcs_near(table[:, 0]), even)[:, None, None]
 
     def points(self, places: Floats) -> Floats:
-        """Return the points (..., 3) x, y, z at s, theta, zeta = `places` (..., 3)."""
+        """Return points x, y, z (..., 3) at coordinates s, theta, zeta (see `BodyMap`) `places` (..., 3)."""
         s, theta, zeta = np.moveaxis(places, -1, 0)
         x, r = np.moveaxis(self.meridional(s.ravel(), zeta.ravel()).reshape(*s.shape, 2), -1, 0)
         r = np.maximum(r, 0.0)

@@ -55,7 +55,7 @@ class Hole:
 
     @property
     def bands(self) -> tuple[float, float]:
-        """Physical distances below and above the rectangle, up to keel, crown or the next wing."""
+        """Physical distances from the collar down to the keel or a wing, and up to the crown or a wing."""
         bottom, top = (theta * float(self.scale[1]) for theta in (self.below, self.within[1][1]))
         if self.fin:
             top = self.box.high + self.box.low - bottom
@@ -80,7 +80,7 @@ class CollarPlan:
 
 
 def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
-    """Return both node counts of `corner_nodes`, averaged over `holes`."""
+    """Return the means of both results of `corner_nodes` over `holes` (sections of a wing)."""
     corners = [corner_nodes(hole.plane, hole.box, _CORNER) for hole in holes]
     edge, nose = (round(sum(each) / len(corners)) for each in zip(*corners, strict=True))
     return edge, nose
@@ -174,7 +174,7 @@ class CollarLevel:
 
     @cached_property
     def beside(self) -> tuple[float, float]:
-        """Physical lengths of the first cells outside the rectangle, below and above it."""
+        """Physical lengths of the first cells below and above the collar."""
         outer, half = self.ring[:, -1, 1], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
         corners = (half + nose, len(outer) - 1 - edge), (half - nose, edge)

@@ -55,7 +55,7 @@ class LoftedMap(BodyMap):
         return np.stack([x, y, z], axis=-1).reshape(places.shape)
 
     def places(self, points: Floats, near: Floats | None = None) -> Floats:
-        """Return s, theta, zeta (..., 3) of points (..., 3), by Newton's method from the values `near`."""
+        """Return s, theta, zeta (`BodyMap`) (..., 3) of points (..., 3); Newton's method starts at `near`."""
         wanted = points.reshape(-1, 3)
         at = (self._first_places(wanted) if near is None else near.reshape(-1, 3)).copy()
         steps = np.diag([_STEP * self.body.length, _STEP, _STEP])

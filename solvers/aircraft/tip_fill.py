@@ -46,7 +46,7 @@ def canted_tip_patches(loop: Floats, first: float, cant: float) -> tuple[Floats,
 def half_tip_patches(half: Floats, first: float) -> tuple[Floats, Floats]:
     """Return half the patches inside the tip of a fin, on one side of the plane z = 0.
 
-    `half` (n, 3) are the nodes of half of the section, from nose to trailing edge; `first`: `tip_patches`.
+    `half` (n, 3) are nodes of half of the section, nose to trailing edge; `first` is as in `tip_patches`.
     """
     flat = half[:, [0, 2, 1]]
     loop = np.concatenate([flat[::-1], flat[1:] * [1.0, -1.0, 1.0]])

@@ -25,7 +25,7 @@ def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: fl
     Parameters
     ----------
     normal : (p, 3) points on normals of the body at the distance `first`, the height of first cells.
-    rings : indices (n, m) of the lines of cells around each wing, from the wing outwards.
+    rings : for each wing, indices (n, m) of lines: n around the wing, m from the wing outwards.
     """
     turned = (normal - points[1]) / first
     turned[points[0, :, 2] == 0.0, 2] = 0.0

@@ -158,7 +158,7 @@ def row_steps(first: float, length: float, largest: float) -> Floats:
 def counts_of(
     cascade: Cascade, chords: Chords, cells: int | None, cell_size: float | None
 ) -> tuple[Indices, int, SizeMetric]:
-    """Return coarse cell counts (chords,) of chords, the factor to final counts, and target cell sizes."""
+    """Return coarse cell counts of chords, the factor from them to final counts, and target cell sizes."""
     sizes = cascade.metric
     wanted = WantedCounts(chords, sizes)
     if cell_size is not None:

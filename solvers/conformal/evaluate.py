@@ -55,7 +55,7 @@ class StripGrid:
         """Map the grid, except its walls, to the plane (`out`: (n + 1, nj, 2)); return whether it is finite.
 
         `lift` is the conformal map from the strip to the plane. The last row repeats the first bitwise. With
-        an `axis`, rows i and n - i are mirror images. A `shift` is added to phi.
+        an `axis`, rows i and n - i are mirror images. `shift` is added to phi, the imaginary part of w.
         """
         n, (ends, points, matrix) = len(self.theta), self._panels
         begin, far = ends[0], self.eta[ends[-1] : -1]

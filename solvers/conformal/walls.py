@@ -21,7 +21,7 @@ CORNER = np.radians(85.0)  # turn at a node, trailing edge aside, that makes a b
 
 
 class StripWalls(NamedTuple):
-    """The wall of a body and the far field, mapped conformally to a strip; n is ni - 1."""
+    """The wall of a body and the far field, mapped conformally to a strip, with n = ni - 1 nodes each."""
 
     lift: Lift  # maps the strip to the plane
     wall: Complexes  # (n,) F = w - i theta, periodic in theta, at the nodes of the wall

@@ -73,7 +73,7 @@ class Follow:
 
     @classmethod
     def of(cls, table: NodeTable, moved: Bools) -> Self:
-        """Return the map for the nodes of `table`; `moved` (n,) masks nodes with prescribed positions."""
+        """Return the map for the nodes `table`; `moved` (n,) marks nodes whose new positions are given."""
         nodes, sources = table.nodes, sources_of(table, moved)
         near = _near(nodes[moved], nodes[sources.fixed])
         held = np.union1d(np.flatnonzero(moved), sources.fixed)
@@ -110,7 +110,7 @@ class Follow:
         return affine(old[at], there[at], turns)
 
     def along_sides(self, move: Floats, there: Floats) -> Floats:
-        """Return `move` (n, d); components normal to sides that are and stay flat are removed in place."""
+        """Make `move` (n, d) tangential to sliding sides that are flat and stay flat in the nodes `there`."""
         for piece in self.sources.sliding:
             normal = normal_of(self.table, piece, there)
             if normal is not None:

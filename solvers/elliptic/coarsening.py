@@ -55,10 +55,10 @@ class Direction:
 
     @cached_property
     def transfer(self) -> tuple[Floats, Floats, Floats, Floats]:
-        """Weights of linear interpolation and of its transpose, the restriction: four arrays.
+        """Weights of linear interpolation (one array) and of its transpose, the restriction (three arrays).
 
-        The first (n,) has for each fine node the weight of the next coarse node, 0 at coarse nodes. The
-        others (coarse n,) have for each coarse node the weights of the fine nodes before, at and after it.
+        The first array (n,) has for each fine node the weight of the next coarse node, 0 at coarse nodes. The
+        three (coarse n,) have for each coarse node the weights of the fine nodes before, at and after it.
         They are scaled by the lengths of the dual cells, so that a constant residual is preserved.
         """
         before, after = self._steps

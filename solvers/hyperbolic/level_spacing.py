@@ -70,7 +70,7 @@ def level_steps(
     Parameters
     ----------
     constant : number of equal steps at the wall; all further steps grow by one ratio.
-    edge : sharp edge of the wall; where lines diverge from the edge, steps grow less.
+    edge : sharp edge of the wall, or None; steps grow less where grid lines diverge from this edge.
     shares : (cells,) weights of the logarithms of the growth ratios.
 
     >>> level_steps(1.0, 9.0, 5, 3, None).tolist()

@@ -97,7 +97,7 @@ def cells_needed(length: float, first: float, last: float, heights: Heights) -> 
 def edge_in_layers(edge: Floats, count: int, first: float, last: float, heights: Heights) -> Floats:
     """Return `count` nodes (count, 2) on the curve through an open edge, with layers at its ends.
 
-    `first` is the distance between the first two nodes, `last` that between the last two; 0 leaves it free.
+    `first` and `last` are the lengths of the first and of the last cell; 0: the length is not prescribed.
     """
     curve = Curve(edge)
     nodes = curve.at(arcs_in_layers(curve, count, first, last, heights)[0])

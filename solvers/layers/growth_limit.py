@@ -42,7 +42,7 @@ class GrowthLimit:
 
     @classmethod
     def at(cls, growth: Floats, limit: float | Floats, change: float = CHANGE) -> Self:
-        """Return the penalty term whose ρ0 are the initial logarithms `growth` (..., k), clipped to ±L."""
+        """Return the term with L = `limit` and μ = `change`; ρ0 is the initial ρ, `growth`, clipped to ±L."""
         return cls(limit, np.clip(growth, -limit, limit), change)
 
     def values(self, growth: Floats, weight: float) -> Floats:
@@ -52,7 +52,7 @@ class GrowthLimit:
         return np.asarray(weight * near * (2.0 * excess - near) + self.change * (growth - self.wanted) ** 2)
 
     def residuals(self, growth: Floats, derivatives: Floats, weight: float) -> Residuals:
-        """Return residuals for a Gauss-Newton step; `derivatives` (..., k, m) belong to `growth` (..., k)."""
+        """Return residuals for a Gauss-Newton step; `derivatives` (..., k, m) of `growth` by m unknowns."""
         excess = np.maximum(np.abs(growth) - self.limit, 0.0)
         pull = weight * np.minimum(1.0, LINEAR / np.maximum(excess, LINEAR))
         stiffness = np.where(np.abs(growth) > self.limit - NEARLY, self.change + pull, self.change)

@@ -92,7 +92,7 @@ class LayerSettings:
         return min(growth, 1.0 + NOMINAL * (self.limit - 1.0)) if self.limit else growth
 
     def arcs(self, length: Floats, first: float | Floats, last: Floats, cells: int) -> Floats:
-        """Return distances (k, cells + 1) from walls by `layer_arcs`, with the growth limit of the layers."""
+        """Return the result of `layer_arcs`, distances (k, cells + 1) from walls, with these settings."""
         most, steeper = self.growth, STEEPER
         if self.limit:
             most, steeper = math.exp(STEEPEST * math.log(self.limit)), STEEPEST / NOMINAL - 1.0

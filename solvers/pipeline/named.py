@@ -64,7 +64,7 @@ class Wrapper(OneByOne):
         return self.method.name
 
     def inner(self, boundary: Boundary, initial: Grid | None = None) -> Solution:
-        """Return the solution of one boundary by the other `method`."""
+        """Return the solution of one boundary by the method that this object calls, `self.method`."""
         return solved(self.method, boundary, initial)
 
 

@@ -20,7 +20,7 @@ TURNING_DEG = 25.0  # largest angle in degrees by which a wall turns along a cel
 
 @dataclass(frozen=True, eq=False)
 class Chords:
-    """Edges of the blocks of a layout, and chords: sets of opposite edges, with the same cell count each."""
+    """Edges of blocks, and chords: sets of opposite edges, which must have the same number of cells."""
 
     layout: Layout
     edges: tuple[Indices, ...]
@@ -117,7 +117,7 @@ class Chords:
 
     @cached_property
     def least(self) -> Indices:
-        """Smallest number of cells (chords,): `LEAST`, or more if walls have corners or turn."""
+        """Smallest number of cells of each chord: `LEAST`, or more if a wall has corners or turns."""
         least = np.full(self.count, LEAST, dtype=np.intp)
         for edge, loop, arcs in self._walls():
             ends = np.sort(arcs[[0, -1]])

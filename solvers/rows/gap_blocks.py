@@ -20,7 +20,7 @@ _ROUNDS = 4
 
 @dataclass(frozen=True, eq=False)
 class GapEnds:
-    """Nodes inside the outline of the blade at both ends of a gap (between blade and hub or casing)."""
+    """Nodes inside the outline of the blade, at the lower and at the upper end of a gap at hub or casing."""
 
     fill: GapFill  # numbering of the nodes; those of the outline come first
     # low, high: (n, 2) s and theta at the lower and at the upper end

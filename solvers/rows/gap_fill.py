@@ -49,8 +49,8 @@ class GapFill:
 def outline_sides(count: int, lead: int, aside: int) -> list[Indices]:
     """Return the indices of the nodes of each of four sides, in an outline of `count` nodes.
 
-    Sides count from 0. Side 1 is around the trailing edge, side 3 around the leading edge, which is node
-    `lead`. Sides 1 and 3 reach `aside` nodes from the edge, in both directions.
+    Side 1 is around the trailing edge, side 3 around the leading edge, which is node `lead`. Each of them
+    extends from its edge by `aside` nodes in both directions. Sides 0 and 2 are between sides 1 and 3.
     """
     m, half = aside, count // 2
     cuts = [m, half - m, half + m, count - m, count + m]

@@ -11,9 +11,9 @@ from meshonet.solvers.rows.across import ChannelLines
 def opposite_places(places: Floats, pairs: Indices, lines: ChannelLines) -> Floats:
     """Return coordinates u (k,) of nodes clockwise around a blade; for each node at u there is one at 1 - u.
 
-    k is even, and both edges have a node, so that blocks in a gap are not skewed. `pairs` (p, 2), ordered
-    from the leading edge, are nodes of the upper and of the lower side that a line across the channel joins.
-    The node at the leading edge is chosen so that these lines lean least from `lines`.
+    k is even, and both edges have a node, so that blocks in a gap are not skewed. Each of `pairs` (p, 2) is a
+    node of the upper and a node of the lower side, which a grid line across the channel joins; pairs begin at
+    the leading edge. The node there is chosen so that these grid lines deviate least from `lines`.
     """
     both = _both_sides(places)
     k, half = len(places), len(places) // 2

@@ -59,7 +59,7 @@ class Rise:
         return replace(self, deep=self.deep[part], moves=self.moves[part])
 
     def shares(self, heights: Floats) -> Floats:
-        """Return, for each of k columns, the fractions (levels, k) of its `moves` that apply at `heights`."""
+        """Return fractions (levels, k) of the displacements `moves` of k columns that apply at `heights`."""
         off = self.up * (heights - self.end)
         away = np.where(off > 0.0, off / self.gap, -off / self.deep)
         return np.asarray(smooth_step(np.clip(1.0 - away, 0.0, 1.0)))

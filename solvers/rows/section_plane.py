@@ -135,7 +135,7 @@ class SectionPlane:
         return np.interp(np.mod(arcs, self._walls[-1]), self._walls, np.append(self.places, 1.0))
 
     def front_arcs(self, u: Floats) -> Floats:
-        """Return arc lengths (n,), on the outer edge of the layers, of columns from places `u` (n,)."""
+        """Return arc lengths (n,) on the outer edge of the layers, where columns from `u` (n,) end."""
         ring = self.cascade.ring
         length, start = self._walls[-1], ring.arcs[0]
         walls = np.append(ring.arcs, start + length)
@@ -176,7 +176,7 @@ class SectionPlane:
         return np.interp(points[:, 0], self._stations, _SHARES)
 
     def stations(self, shares: Floats) -> Floats:
-        """Return m' (n,) at `shares` (n,) along the passage."""
+        """Return m' (see `MeridionalMap`) (n,) at positions in the passage `shares` (n,), -1 to 2."""
         return np.interp(shares, _SHARES, self._stations)
 
     def camber(self, shares: Floats) -> Floats:

@@ -35,7 +35,7 @@ class SpanLines:
         return cls(_times(kept, values))
 
     def of(self, columns: slice | Indices) -> "SpanLines":
-        """Return the functions with these indices."""
+        """Return the polynomials with the indices `columns`."""
         return SpanLines(self.coefficients[:, columns])
 
     def at(self, heights: Floats) -> Floats:
@@ -53,7 +53,7 @@ def slopes_at_keys(values: Floats) -> Floats:
 
 
 def integrals_at_keys(values: Floats) -> Floats:
-    """Return the integrals (k, n, ...) from 0 to `key_heights` of polynomials through `values`."""
+    """Return integrals (k, n, ...), from 0 to each of `key_heights`, of polynomials through `values`."""
     return _times(_integrals(len(values)), values)
 
 

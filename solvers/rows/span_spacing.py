@@ -157,7 +157,7 @@ class LineArcs:
         return cls(lengths, SpanLines.through(ahead))
 
     def parts(self, spacing: Spacing) -> Floats:
-        """Return the parameters (cells + 1, n) of nodes with a `spacing`."""
+        """Return the parameters (cells + 1, n), from 0 to 1, of nodes on the n lines with a `spacing`."""
         return self.parts_at(spacing.at(self.lengths))
 
     def parts_at(self, arcs: Floats) -> Floats:
@@ -168,9 +168,9 @@ class LineArcs:
 
 
 def line_parts(samples: Floats, ends: Ends, growth: float, cells: int) -> Floats:
-    """Return the parameters (cells + 1, n) of the nodes of `two_sided` on n lines.
+    """Return parameters (cells + 1, n), 0 to 1, of nodes on n lines with the cell lengths of `two_sided`.
 
-    `samples` (SAMPLES, n, 3) are positions at parameters ``key_heights(SAMPLES)``.
+    `samples` (SAMPLES, n, 3) are points of the lines at the parameters ``key_heights(SAMPLES)``.
     """
     arcs = LineArcs.through(samples)
     range_ = float(arcs.lengths.min()), float(arcs.lengths.max())

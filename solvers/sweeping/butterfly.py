@@ -30,11 +30,11 @@ Sides: TypeAlias = Sequence[Floats]
 
 
 class FiveBlocks(NamedTuple):
-    """Division of the inside of curves: relative size of the core, rows of the ring, alignment with radii."""
+    """Division of the inside of closed curves into a core and a ring of four blocks (butterfly grid)."""
 
-    core: float
-    rows: int
-    radial: float = 0.0
+    core: float  # relative size of the core
+    rows: int  # rows of cells of the ring
+    radial: float = 0.0  # alignment of the lines of the ring with radii, 0 to 1
 
 
 @dataclass(frozen=True)

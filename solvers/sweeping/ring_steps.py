@@ -52,7 +52,7 @@ def fewest_rows(lengths: Floats, sizes: Floats, first: float | None, growth: flo
 def largest_ratio(lengths: Floats, sizes: Floats, steps: Floats) -> float:
     """Return the largest ratio of neighbouring cell lengths on k lines, infinite if steps do not fill a line.
 
-    `lengths` (k,) are the lengths of the lines, `steps` (k, rows) their cells, `sizes` (k,) the next cells.
+    `steps` (k, rows) are the cells of lines of `lengths` (k,). `sizes` (k,) are the cells beyond the lines.
     """
     if np.abs(steps.sum(axis=1) - lengths).max() > _CLOSE * lengths.max():
         return math.inf

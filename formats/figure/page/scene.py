@@ -55,11 +55,11 @@ class Lattice:
 
 @dataclass(frozen=True)
 class SceneSheet:
-    """A layer of cells of a lattice.
+    """A drawn layer of cells of a lattice (a block, or a part of a block of a large volume).
 
     `axis` is the direction normal to the layer (None: the lattice is a layer). `node` is the layer's index
-    along `axis`. `ranges` are first and last node along each other direction. In a large volume, lattices
-    are parts of blocks; `at` is then the layer's index in the block along `across` (i, j or k).
+    along `axis`. `ranges` are first and last node along each other direction. If the lattice is a part of a
+    block, `at` is the layer's index in the block along `across` (i, j or k).
     """
 
     lattice: int

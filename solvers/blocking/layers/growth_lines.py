@@ -88,11 +88,11 @@ class GrowthLines:
         return np.asarray(log(modulus(after) / modulus(before)) + self.offset)
 
     def edges(self, z: Complexes) -> tuple[Complexes, Complexes]:
-        """Return the first and second edges (k,) of pairs as complex numbers, for positions `z` (n,)."""
+        """Return first and second edge of each pair as complex numbers (k,), for nodes at `z` (n,)."""
         return z[self.nodes[:, 1]] - z[self.nodes[:, 0]], z[self.nodes[:, 2]] - z[self.begins]
 
     def largest_at(self, mesh: QuadMesh, rows: list[Indices]) -> Floats:
-        """Return the largest |growth| (n,) at each node; on lines in `rows` (k, m), at least the start's."""
+        """Return the largest |growth| (n,) at each node; on lines `rows` at least the value at the start."""
         growth = np.zeros(len(mesh.nodes))
         np.maximum.at(growth, self.nodes[:, 1], np.abs(self.growth(complex_of(mesh.nodes))))
         for table in rows:

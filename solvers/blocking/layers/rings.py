@@ -152,9 +152,9 @@ def march_ring(
 
 
 def room_between(rings: Mapping[int, Ring]) -> dict[int, Floats]:
-    """Return, by loop index, the permitted thickness (n,) at the columns of each ring too close to another.
+    """Return, by loop index, the largest thickness (n,) at the columns of rings that are too close to others.
 
-    Rings may collide although walls do not face each other, because columns fan out around sharp edges.
+    Rings can collide although walls do not face each other, because columns fan out around sharp edges.
     """
     rooms = {}
     walls = {k: np.arange(_SAMPLES) / _SAMPLES * ring.wall.length for k, ring in rings.items()}
@@ -174,7 +174,7 @@ def room_between(rings: Mapping[int, Ring]) -> dict[int, Floats]:
 
 
 def mirrored(ring: Ring, loop: Loop, mirror: Mirror, total: float) -> Ring:
-    """Return the mirror image of a ring; it is around `loop`, whose entry in `mirror.sums` is `total`."""
+    """Return a ring's mirror image around `loop`; the image of arc length s is at arc length `total` - s."""
     arcs = _at_corners(loop, np.mod(total - ring.arcs[::-1], loop.length))
     levels = mirror.images(ring.levels[::-1])
     levels[:, 0] = loop.at(arcs)

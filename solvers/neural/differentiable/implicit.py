@@ -55,7 +55,7 @@ class Converged(BatchFunction):
 
     @staticmethod
     def backward(ctx: Any, gradient: Tensor, _: Tensor) -> tuple[None, Tensor]:
-        """Return None for the equations, and the derivative by `nodes`, which is zero at inner nodes."""
+        """Return None for `equations`, and the derivative with respect to `nodes`, zero at inner nodes."""
         return None, Adjoint.apply(ctx.equations, *ctx.saved_tensors, gradient)  # type: ignore[no-untyped-call]
 
 

@@ -121,7 +121,7 @@ def infer_volume(faces: SixFaces, *, model: str, answer: Answer = "valid") -> So
     """Return the grid inside `faces` by a trained network.
 
     `answer`: ``raw`` returns the predicted nodes, ``pasted`` replaces their faces by `faces`, ``valid`` also
-    repairs folded cells. Raises InputError if there is no such model, or if it does not know the geometry.
+    repairs folded cells. Raises InputError: no such model; a geometry on which it was not trained.
     """
     network = load_volume(model)
     nodes = network.nodes(faces)
