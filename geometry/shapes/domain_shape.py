@@ -71,7 +71,11 @@ class DomainShape:
         if self.one is None:
             remedy = "let infer or solve-pde find its blocks"
             raise InputError(f"{described(self.domain)} is not one block", remedy)
-        return self.one().boundary(sampling)
+        boundary = self.one().boundary(sampling)
+        if not (self.many and boundary.around_body and len(self.domain.loops) == 1):
+            return boundary
+        note = "the grid surrounds the closed curve; {topology} quad, or several blocks, fill it"
+        return replace(boundary, notes=(*boundary.notes, note))
 
 
 def itself(shape: Shape) -> Shape:

@@ -1,6 +1,7 @@
 """Domains of many blocks from the command line: what is read, what is made of it, what is refused."""
 
 import json
+import math
 from pathlib import Path
 
 import numpy as np
@@ -156,6 +157,11 @@ def test_one_block_stays_one_and_single_asks_for_it(meshonet: Meshonet) -> None:
     assert (
         meshonet("infer", "step.wkt", "--blocks", "single", "--json", "-o", "a.h5").only["topology"] == "quad"
     )
+    circle = [[math.cos(0.1 * math.pi * k), math.sin(0.1 * math.pi * k)] for k in [*range(20), 0]]
+    write("disc.geojson", feature([circle]))
+    disc = meshonet("infer", "disc.geojson", "--blocks", "single", "--json", "-o", "a.h5").only
+    assert disc["topology"] == "o"
+    assert any("surrounds the closed curve" in note for note in disc["notes"])
     write("plate.geojson", feature([BOX, *HOLES]))
     done = meshonet("infer", "plate.geojson", "--blocks", "single", "-o", "none.h5")
     message = "a domain with 2 holes is not one block; let infer or solve-pde find its blocks"
