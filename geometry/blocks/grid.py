@@ -49,7 +49,7 @@ _MOST_SHOWN = 6
 class Origin:
     """Where a sample of a dataset comes from.
 
-    `parameters` are those of the shape. `split` is ``train``, ``test`` or empty. `title` is the name of the
+    `parameters` are shape parameters. `split` is ``train``, ``test`` or empty. `title` is the name of the
     shape inside its file, if the sample is named after the file.
     """
 
@@ -123,7 +123,7 @@ class Grid(Connected):
         """Return the grid of a single block (see `Block`); its connections are found from its nodes.
 
         In the topology ``c``, the wake is the start of the south side that is repeated in reverse at its end.
-        Without `patches`, the grid gets those of `default_patches`.
+        Without `patches`, the grid gets the `default_patches`.
 
         Raises InputError: as `Block`; an O grid that is not closed, a C grid without a wake.
         """

@@ -72,7 +72,7 @@ class Domain:
         Raises
         ------
         InputError
-            The number of names is not that of the polygons, or not that of a polygon's parts.
+            The number of names differs from the number of polygons, or of the parts of a polygon.
 
         Examples
         --------

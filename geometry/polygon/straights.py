@@ -21,9 +21,9 @@ def find_kinks(points: Floats, *, few: int = FEW) -> Indices:
     """Return the ascending indices of kinks of an open polygon `points` (n, 2); corners may be among them.
 
     A turn of more than 2 degrees is a kink if it is 20 times as large as both neighbouring turns. In a
-    polygon of at most `few` points, all turns of more than 2 degrees are kinks if two successive turns, in
-    opposite directions, are at least half of the largest turn: a smooth curve through these points would be a
-    wave.
+    polygon of at most `few` points, two successive turns in opposite directions may both be at least half of
+    the largest turn. A smooth curve through these points would be a wave. Then all turns of more than 2
+    degrees are kinks.
     """
     turn = turning(points)
     size = np.abs(turn)

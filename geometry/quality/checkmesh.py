@@ -141,7 +141,7 @@ def _outer(grid: Grid) -> Iterator[Values]:
 
 
 def centroids(nodes: Floats) -> Floats:
-    """Return the centroids (ni-1, nj-1, 2) of the cells of `nodes` (ni, nj, 2), each as two triangles."""
+    """Return the centroids (ni-1, nj-1, 2) of the cells of `nodes` (ni, nj, 2), from two triangles each."""
     a = nodes[:-1, :-1]
     b, c, d = nodes[1:, :-1] - a, nodes[1:, 1:] - a, nodes[:-1, 1:] - a
     first, second = cross2(b, c), cross2(c, d)

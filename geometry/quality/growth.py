@@ -133,7 +133,7 @@ def across_wake(grid: Grid) -> Floats:
 
 
 def strips(nodes: Floats, more: int) -> Iterator[tuple[int, Floats]]:
-    """Yield parts of `nodes` (ni, nj, 2) after their first i; successive parts share `more` values of i."""
+    """Yield first index i and nodes of each part of `nodes` (ni, nj, 2); parts share `more` values of i."""
     for i in range(0, max(len(nodes) - more, 0), ROWS):
         yield i, nodes[i : i + ROWS + more]
 

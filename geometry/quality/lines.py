@@ -55,7 +55,7 @@ class BlockLines:
 def lines(grid: Grid, nodes: Vertices, *, all_measures: bool = True) -> Lines:
     """Return growth and turning of the grid lines of planar blocks or surface patches.
 
-    `nodes` are the vertices of the grid. Without `all_measures`, bend and percentiles are left out.
+    `nodes` are the vertices of the grid. Without `all_measures`, turning and percentiles are left out.
     """
     measures = (ratios, bends) if all_measures else (ratios,)
     parts = [*_inside(grid, measures), *_across(grid, nodes, measures)]

@@ -106,7 +106,7 @@ class FirstCell:
     def height_notes(
         self, where: str, unit: float = 1.0, in_unit: str = "", scale: float = 1.0
     ) -> tuple[str, ...]:
-        """Return a note on how the first-cell height follows from y+; nothing without y+.
+        """Return a note on how the first-cell height follows from y+; an empty tuple without y+.
 
         `where` describes the reference length. `scale` is the factor from heights to the unit of the note,
         which is called `in_unit`.

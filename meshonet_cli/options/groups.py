@@ -86,7 +86,7 @@ def _taken_by_typer(name: str, kind: Any, default: Any) -> list[inspect.Paramete
 
 
 def bad_value(text: str, what: str, remedy: str, parameter: str) -> Exception:
-    """Return the error for an option with the value `text`; `what` says what it should be."""
+    """Return the error for an option with the value `text`; `what` says what the value should be."""
     from meshonet.geometry.errors import InputError
 
     return InputError(f"{text!r} is not {what}", remedy, parameter=parameter)

@@ -64,7 +64,7 @@ def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
 
 
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
-    """Return on which nodes of a section `root` the lines to the corners of the rectangle `box` begin.
+    """Return at which nodes of a section `root` lines to the corners of the rectangle `box` begin.
 
     The first number counts nodes from the middle of the trailing edge to either side, the second from the
     nose. With these numbers, at least `fewest`, cells on both sides of a corner have similar lengths.

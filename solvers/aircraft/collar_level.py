@@ -203,7 +203,7 @@ class CollarLevel:
 
     @property
     def across(self) -> tuple[Floats, Floats]:
-        """Ascending theta of the nodes on the front and on the back of the rectangle."""
+        """Ascending theta of the nodes on the front and on the back of the rectangle around the section."""
         outer, half, rho = self.ring[:, -1, 1], (len(self.ring) - 1) // 2, float(self.hole.scale[1])
         edge, nose = self.plan.edge, self.plan.nose
         front = outer[half + nose : half - nose - 1 : -1] / rho
@@ -216,7 +216,7 @@ class CollarLevel:
 
     @property
     def long_sides(self) -> tuple[Floats, Floats]:
-        """The s of the nodes on the lower and on the upper side of the rectangle, from back to front."""
+        """Coordinate s of the nodes on the rectangle's lower and upper side, each from back to front."""
         s, half = self.ring[:, -1, 0] / self.hole.scale[0], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
         return s[half + nose : 2 * half - edge + 1][::-1], s[edge : half - nose + 1]

@@ -92,7 +92,7 @@ class Passage:
         return centre + np.array(axial)[:, None] * self.axis + np.array(along)[:, None] * self.pitch
 
     def zeta(self, points: Floats) -> Complexes:
-        """Return the complex coordinates ζ (n,) of points (n, 2); the pitch becomes iπ, the axis real."""
+        """Return complex coordinates ζ (n,) of points (n, 2): the pitch is iπ, the axial direction real."""
         return np.asarray(times(1j * np.pi, (complex_of(points) - self.centre)) / self.period)
 
     def of_zeta(self, zeta: Complexes) -> Floats:

@@ -18,7 +18,7 @@ FEWEST = 256  # columns
 
 
 def columns(modes: Complexes) -> Floats:
-    """Return values f (Q, 2, width) at Q angles, of which windowed sums give m sums of Fourier modes.
+    """Return values f (Q, 2, width) at Q angles; windowed sums of these values equal m Fourier series.
 
     `modes` (m, 2 K + 1) have the order k = 0 .. K, -K .. -1. Q is a power of two above 4 K. The sum at theta
     has `TAPS` terms::

@@ -47,7 +47,7 @@ def optimise(
 
     Parameters
     ----------
-    iterations : greatest number of iterations, without those of untangling.
+    iterations : greatest number of iterations; iterations of untangling are not counted.
     held : (n,) mask of fixed nodes; corners (`Places.cells` > 0) are fixed anyway.
     aspects : (m,) target ratios of a cell's sides 1-2 and 0-3 to its sides 0-1 and 3-2.
     targets : (e,) target lengths of `mesh.edges` in any unit, because only ratios of neighbours matter.

@@ -38,7 +38,7 @@ class Fewer(Wrapper):
     """Solves large grids by `method` on fewer nodes. If cells are folded, it tries twice as many nodes."""
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the solution of a boundary; all nodes are used if it is small or `start` is given."""
+        """Return the solution of a boundary, on fewer nodes if it is large and no `start` is given."""
         above, n = FEWER_NODES.get(self.name, (0, 0))
         if not n or start is not None or max(boundary.ni, boundary.nj) <= above:
             return self.inner(boundary, start)
@@ -80,5 +80,5 @@ def elliptic() -> Auto:
 
 
 def fewer_on_quads(method: Method) -> Auto:
-    """Return `method`, which then solves large four-sided domains on fewer nodes."""
+    """Return a method that uses `method`, on fewer nodes in large four-sided domains."""
     return Auto(Fewer(method), method, method, method.name)

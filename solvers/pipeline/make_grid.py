@@ -111,7 +111,7 @@ def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result
 def make_grids_of(
     keys: Iterable[K], request: GridRequest, shape_of: Callable[[K], Shape]
 ) -> Iterator[tuple[K, Result | Exception]]:
-    """Yield each of the `keys` with the grid of its shape, or with the error in which it ended.
+    """Yield each of the `keys` with the grid of its shape, or with the error that occurred.
 
     `shape_of` returns the shape of a key. Raises InputError if the request has settings that the method does
     not have. See also `make_grids`.

@@ -34,7 +34,7 @@ class Chords:
 
     @classmethod
     def of(cls, layout: Layout, images: Sequence[Indices] = ()) -> "Chords":
-        """Return the edges and chords of a layout; an edge and its mirror image are in the same chord."""
+        """Return edges and chords (sets of opposite edges); an edge and its mirror image share a chord."""
         edges: list[Indices] = []
         numbers: dict[tuple[int, ...], int] = {}
         sides = np.empty((len(layout.blocks), 4), dtype=np.intp)

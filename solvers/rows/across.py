@@ -15,7 +15,7 @@ _FROM = -0.25  # least place: u = 0, the leading edge, is between others
 
 @dataclass(frozen=True, eq=False)
 class ChannelLines:
-    """Lines across the channel between two blades, normal to the edges of layers; means of all sections."""
+    """Lines across the channel between two blades, normal to the edges of layers, as means of sections."""
 
     upper: Floats  # (n,) places u (see `SectionPlane`) on the upper side of a blade, from 0 to 0.5
     lower: Floats  # (n,) 1 - u of the opposite places, on the lower side of the next blade
@@ -50,7 +50,7 @@ class ChannelLines:
         return PlaceLinks(pairs, factors, scale * aside - (factors * u[pairs]).sum(axis=1))
 
     def leaning(self, u: Floats, pairs: Indices) -> float:
-        """Return the mean square of the lean of lines between nodes `pairs` (p, 2) at places `u` (k,)."""
+        """Return the mean square of tan(angle to the normal) of lines between nodes `pairs` at places `u`."""
         return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
     def weights(self, pairs: Floats) -> Floats:

@@ -34,7 +34,7 @@ def section_cells(zones: Sequence[Zone], cells: int, growth: float) -> int:
 
 
 def fewest_cells(zones: Sequence[Zone], growth: float) -> int:
-    """Return about the smallest number of cells of a row whose cells grow by at most `growth`."""
+    """Return about the smallest number of cells of a blade row in which cells grow by at most `growth`."""
     return round(_needed(growth) * _sections(zones))
 
 

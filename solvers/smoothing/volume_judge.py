@@ -24,7 +24,7 @@ class VolumeMeasures:
     least: float  # smallest scaled Jacobian of a corner
 
     def no_worse(self, than: Self) -> bool:
-        """Return whether no measure is worse than that of `than`, apart from negligible differences."""
+        """Return whether no measure is worse than the same measure in `than`, except negligibly."""
         if than.folded or self.folded:
             return self.folded < than.folded
         return self.mean <= max(than.mean + _SLACK, _NOTHING) and self.least >= than.bound

@@ -25,7 +25,7 @@ _NONE: Mapping[int, int] = MappingProxyType({})
 
 
 def sums_of(chords: Chords) -> Sums:
-    """Return how many edges of each chord are on each side with a given cell count, by side name and chord.
+    """Return for each side with a given cell count how many of its edges are in each chord (see `Chords`).
 
     Raises InputError if such a side begins or ends where the boundary goes straight on.
     """
@@ -137,7 +137,7 @@ def nearer(chords: Chords, counts: Indices, multiple: int = 1) -> Indices:
 
 
 def check_sides(layout: Layout) -> None:
-    """Raise SolverError if periodic sides cannot match: equal counts, and the right valence at their ends."""
+    """Raise SolverError unless periodic sides can have equal cell counts and the right valence at ends."""
     mesh = layout.mesh
     if not mesh.domain.periodic:
         return

@@ -36,7 +36,7 @@ def ring_metric(ring: Ring, settings: LayerSettings, factors: Floats | float = 1
 def last_layers(
     thickness: Floats, rows: int, settings: LayerSettings, first: float | Floats | None = None
 ) -> Floats:
-    """Return the heights (n,) of the cells next to `rows` layers with the total `thickness` (n,)."""
+    """Return the heights (n,) of the first cells beyond `rows` layers with the total `thickness` (n,)."""
     none = np.full_like(thickness, np.inf)
     arcs = layer_arcs(thickness, settings.first if first is None else first, none, rows, settings.constant)
     return np.asarray(settings.join * (arcs[:, -1] - arcs[:, -2]))
@@ -48,8 +48,8 @@ def ring_rows(
 ) -> Rows:  # fmt: skip
     """Return the layers between the wall of a ring and the nodes of `mesh` on its front (their outer edge).
 
-    `inner` (k,) are the heights of the cells beyond the front. First-cell heights are those of the settings,
-    multiplied by the values of `factors` at arc lengths (k,) of the wall if given.
+    `inner` (k,) are the heights of the cells beyond the front. First-cell heights of the settings are
+    multiplied by `factors`, a function of arc lengths (k,) of the wall.
     """
     order = mesh.places.along(loop)
     columns, starts = ring.columns(mesh.places.arc[order])

@@ -97,7 +97,7 @@ class WallLayers:
 
     @cached_property
     def of_rows(self) -> tuple[LayerSettings, ...]:
-        """Settings of the layers in each row of blocks: rows around sheets, then rows along stretches."""
+        """Settings of the layers in each row of blocks: first around `sheets`, then along `stretches`."""
         loops = self.domain.loops
         names = [loops[k].names for k in self.sheets] + [s.names(loops[s.loop]) for s in self.stretches]
         return tuple(map(self.settings.at, names))

@@ -71,7 +71,7 @@ def march_graph(
 
     Parameters
     ----------
-    planes, in_plane : planes of symmetry, and for each a mask (p, k) of the open edges in it.
+    planes, in_plane : p planes of symmetry, and masks (p, k) that mark which of the k open edges are in them.
     hollow : (n,) distances from concave edges (`meshonet.geometry.surface.hollows`).
     splay : ghost nodes beyond free edges are 1 + `splay` times as far away as the nodes `Seen.opposite`.
     boost : additional smoothing at irregular nodes.

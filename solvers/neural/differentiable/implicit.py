@@ -60,7 +60,7 @@ class Converged(BatchFunction):
 
 
 class Adjoint(FirstDerivative):
-    """Torch function from derivatives by all nodes to derivatives by boundary nodes (`Equations.adjoint`)."""
+    """Torch function that turns derivatives by all nodes into derivatives by boundary nodes."""
 
     @staticmethod
     def forward(equations: Equations, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:

@@ -60,7 +60,7 @@ class OperatorTask(ModelTask):
         self.parts = ("interior", "boundary", *(("penalty",) if more else ()))
 
     def forward(self, rows: Tensor, step: int) -> Tensor:
-        """Return the weighted terms of the loss over the shapes `rows`: interior, boundary, any penalty."""
+        """Return the weighted loss terms of the shapes `rows`: interior, boundary, and any penalty."""
         index, inner = self._drawn(step)
         place = torch.from_numpy(index).to(self.places.device)
         goal = self.targets.index_select(0, place).view(len(place), self.count, 2)

@@ -48,7 +48,7 @@ class Quads:
 def quads_of(datasets: Iterable[Iterable[Grid]]) -> Quads:
     """Return the domains that are both in a dataset of Winslow's grids and in one of variational grids.
 
-    The method of a dataset is that of its first grid. Raises InputError if one of the two methods is missing
+    The first grid determines the method of a dataset. Raises InputError if one of the two methods is missing
     or there is another one; see also `quads`.
     """
     groups: dict[str, list[Grid]] = {}

@@ -80,7 +80,7 @@ def _extrapolated(correction: Any, step: Any, move: Any, xp: Any) -> Any:
 
 
 def nodes_after(n: int) -> int:
-    """Return the node count, along a direction, for Picard steps; the final grid has `n` nodes along it."""
+    """Return how many nodes along a direction Picard steps use if the final grid has `n` nodes along it."""
     return min(max(n, LATENT), FINER)
 
 

@@ -13,7 +13,7 @@ GATE = 0.3  # factor of b tanh(a)
 
 
 class StripNetwork:
-    """A Fourier neural operator along theta, the periodic coordinate of strips, with one set of weights.
+    """A Fourier neural operator along theta, the periodic coordinate of strips, with given `weights`.
 
     ::
 

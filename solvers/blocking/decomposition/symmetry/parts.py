@@ -63,9 +63,9 @@ class DomainPart:
 
 
 def spans_between(loop: Loop) -> list[Span]:
-    """Return the spans (parts) of a loop between successive corners that have a single cell.
+    """Return the spans (parts) of a loop between successive corners at which a single cell meets.
 
-    Corners within a span have two cells.
+    At corners within a span, two cells meet.
     """
     corners = zip(loop.corner_arcs.tolist(), loop.corner_cells.tolist(), strict=True)
     turns = [(arc, cells) for arc, cells in corners if cells != 2]
