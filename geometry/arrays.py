@@ -155,7 +155,7 @@ def middle(values: Floats) -> float:
 
 
 def percentiles_of(values: NDArray[Any], percents: Sequence[float]) -> list[float]:
-    """Return percentiles of all `values`, bitwise those of np.percentile, but without loading numpy.ma.
+    """Return percentiles of all `values`, bitwise as np.percentile does, but without loading numpy.ma.
 
     >>> percentiles_of(np.array([[3.0, 1.0], [2.0, 4.0]]), (0, 50, 100))
     [1.0, 2.5, 4.0]

@@ -54,7 +54,7 @@ def reached(name: str, unit: str = "", done: int = 0, count: int = 0) -> None:
 
 @contextlib.contextmanager
 def stage(name: str, seconds: Timings) -> Iterator[None]:
-    """Return a context that is the stage `name`: watchers are told, and its time is added to `seconds`."""
+    """Return a context for the stage `name`: its start is announced, and its time is added to `seconds`."""
     reached(name)
     begun = time.perf_counter()
     try:

@@ -33,7 +33,7 @@ _INTEGER_FIRST = re.compile(rb"\s*\d+(?:\*\d+)?[\s,]")  # first word: an integer
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether the first bytes of a file, `head`, are those of a Plot3D grid."""
+    """Return whether a file that begins with the bytes `head` can be a Plot3D grid."""
     textual = is_text(head)
     if textual and not _INTEGER_FIRST.match(head):
         return False

@@ -42,7 +42,7 @@ class Line(NamedTuple):
     - ``noted``: two numbers, then words;
     - ``gap``: a number, then dots in place of the next;
     - ``damaged``: two words meant as numbers, one of them invalid (``1.0 nan``, ``1.0 ****``, ``1.0 O.O0``);
-    - ``broken``: a number alone, or beside something else;
+    - ``broken``: a number alone, or together with other text;
     - ``text``: all other lines.
     """
 

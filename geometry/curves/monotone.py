@@ -8,7 +8,7 @@ from meshonet.geometry.arrays import Floats, Indices
 def inner_slopes(h: Floats, delta: Floats) -> Floats:
     """Return slopes (n-1, ...) at the points between n intervals with lengths `h` and chord slopes `delta`.
 
-    They are weighted harmonic means of the two `delta` beside a point, or 0 if these differ in sign.
+    They are weighted harmonic means of the chord slopes before and after a point; 0 if these differ in sign.
     """
     w1, w2 = 2 * h[1:] + h[:-1], h[1:] + 2 * h[:-1]
     with np.errstate(divide="ignore", invalid="ignore"):

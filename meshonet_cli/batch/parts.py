@@ -121,7 +121,7 @@ def deliver_parts(
     Parameters
     ----------
     written : called with the report of each successful member and the path of the file.
-    whole : whether these are all parts, not only those of a shard.
+    whole : whether all parts are made, not only the parts of a shard.
 
     Raises OtherPartsError if existing parts belong to another dataset or must not be skipped.
     """

@@ -32,9 +32,9 @@ def at_height(space: BodyMap, wall: Floats, beside: Floats, first: float) -> Flo
 
 
 def between_walls(walls: tuple[Floats, Floats], beside: Floats, first: float) -> Floats:
-    """Return points (n, 3) at the distance `first` from both `walls` (n, 3), on the side of `beside` (n, 3).
+    """Return n points (n, 3), each at the distance `first` from two wall points, towards `beside` (n, 3).
 
-    The two points on the walls must be at most twice `first` apart.
+    `walls` has two arrays (n, 3) of wall points. Two such points must be at most twice `first` apart.
     """
     middle, half = 0.5 * (walls[0] + walls[1]), 0.5 * (walls[1] - walls[0])
     away, square = beside - middle, (half * half).sum(axis=-1)

@@ -58,7 +58,7 @@ def fin_loft(fin: Fin, unit: Floats) -> Loft:
 def surface_loft(wing: SurfaceWing, body: Body, plan: Around) -> Loft:
     """Return lines on the surface of a wing, distributed as in `plan`, with two cells on the blunt base.
 
-    The first and the last line are in the middle of the base. Lines that end on the body go on into it.
+    The first and the last line are in the middle of the base. Lines that end on the body continue inside it.
     """
     base = float(np.median(wing.base(wing.z)))
     q = np.linspace(0.0, 1.0, plan.cells + 1)

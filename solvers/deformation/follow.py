@@ -40,7 +40,7 @@ class Field:
     def of(cls, nodes: Floats, sources: Indices, areas: Floats, near: float, points: Indices) -> Self:
         """Return the field of `sources` (k,) at `points` (m,), both given as indices into `nodes` (n, d).
 
-        `areas` (n,) are the lengths or areas that belong to the nodes.
+        `areas` (n,) are the lengths or areas that belong to the nodes; `near` is as in `Field`.
         """
         places = np.ascontiguousarray(nodes[sources].T)
         where = np.ascontiguousarray(nodes[points].T)

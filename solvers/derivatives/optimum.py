@@ -30,7 +30,7 @@ class OptimumDerivative:
 
     Parameters
     ----------
-    grid : a grid near the solution for its own boundary nodes, so that Newton's method converges.
+    grid : a grid near the solution for the same boundary nodes, so that Newton's method converges.
     method : the equations that inner nodes satisfy, ``variational`` or ``winslow``.
     weights : weights of the functional. None: the weights in the provenance of `grid`, or the defaults of
         `solve_pde`.

@@ -66,7 +66,7 @@ def reentrant(edges: Four) -> list[Corner]:
 def patches(
     level: MultigridLevel, xi: Direction, eta: Direction, corners: list[Corner], scratch: Floats
 ) -> list[CornerPatch]:
-    """Return the patches of `level` around `corners`, whose indices are those of the finest level."""
+    """Return the patches of `level` around `corners`; the indices of `corners` refer to the finest level."""
     if min(xi.cells, eta.cells) < LEAST:
         return []
     return [CornerPatch(level, xi, eta, _window(xi, eta, side, index), scratch) for side, index in corners]

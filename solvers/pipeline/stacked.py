@@ -53,7 +53,7 @@ def make_stacked(what: Sections, **parameters: Any) -> Result:
     """Return the volume grid of a stack, a row or an aircraft, with its quality.
 
     `parameters` are fields of `StackRequest`, `RowRequest` or `AircraftRequest`. Raises InputError for
-    others, and the errors of `make_stack`, `make_row` or `make_aircraft`.
+    other parameters, and the errors of `make_stack`, `make_row` or `make_aircraft`.
     """
     if isinstance(what, Stack):
         from meshonet.solvers.pipeline.stacks import make_stack

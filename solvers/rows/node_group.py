@@ -46,7 +46,7 @@ class NodeGroup:
         return out
 
     def values(self, arcs: Sequence[LineArcs], spacings: Sequence[Spacing]) -> Floats:
-        """Return s, theta, h (levels, m, 3) (see `Channel`) for the arc lengths and spacing of each zone."""
+        """Return s, theta, h (levels, m, 3) (see `Channel`); `arcs` and `spacings` have a value per zone."""
         values = self.at(self._heights(arcs, spacings))
         self._exact_along_span(values)
         if self.around:

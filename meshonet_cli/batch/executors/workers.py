@@ -87,7 +87,7 @@ class Workers:
             yield left
 
     def alone(self, function: Callable[[T], R], task: T) -> R:
-        """Return the result of a task that runs without others. Raises WorkerDiedError if its worker died."""
+        """Return the result of a task while no other task runs. Raises WorkerDiedError: its worker died."""
         try:
             return self.result(self.submit(function, task))
         except BrokenExecutor as error:

@@ -152,7 +152,7 @@ def march_ring(
 
 
 def room_between(rings: Mapping[int, Ring]) -> dict[int, Floats]:
-    """Return, by loop index, the largest thickness (n,) at the columns of rings that are too close to others.
+    """Return, by loop index, the permitted thickness (n,) at the columns of rings too close to another ring.
 
     Rings can collide although walls do not face each other, because columns fan out around sharp edges.
     """

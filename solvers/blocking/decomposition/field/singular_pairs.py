@@ -31,9 +31,9 @@ def without_pairs(
 ) -> Complexes:
     """Return the crosses (n,) without those pairs of singular points whose removal lowers the energy.
 
-    `crosses` are exp(4 i theta) at the vertices; those at walls do not change. The free vertices of
-    `laplacian` are the interior ones; `factor` is its factored matrix. If no pair is removed, the given array
-    is returned.
+    `crosses` are exp(4 i theta) at the vertices; crosses at walls do not change. The free vertices of
+    `laplacian` are the interior vertices; `factor` is its factored matrix. If no pair is removed, `crosses`
+    itself is returned.
     """
     phase = angle(crosses)
     steps = phase[surface.triangles[:, NEXT]] - phase[surface.triangles]
