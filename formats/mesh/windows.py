@@ -87,7 +87,7 @@ def part_of(window: FaceWindow, lattices: Sequence[IndexedNodes]) -> SidePart | 
 
 
 def patch_of(face: Face, lattices: Sequence[IndexedNodes]) -> Patch | None:
-    """Return the patch that a face describes; None if it is not on a single side. Errors as `part_of`."""
+    """Return the patch that a face describes; None if no single side has the face. Errors as `part_of`."""
     part = part_of(face.window, lattices)
     if part is None:
         return None

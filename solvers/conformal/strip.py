@@ -29,7 +29,7 @@ np.linalg.eig(d2[1:-1, 1:-1])``, ``np.save(EIGENVECTORS, np.vstack([w, v, np.lin
 
 @dataclass(frozen=True)
 class Across:
-    """Chebyshev points across the strip, and the matrices of derivatives there."""
+    """Chebyshev points across the strip, and the matrices of derivatives at these points."""
 
     s: Floats
     eta: Floats

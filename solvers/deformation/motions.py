@@ -25,7 +25,7 @@ class Turning:
 
     @classmethod
     def of(cls, nodes: Floats, edges: Indices) -> Self:
-        """Return the weights of wall `edges` (m, 2) in the angles of nodes; edges index `nodes` (n, 2)."""
+        """Return the weights of wall `edges` (m, 2), indices of `nodes` (n, 2), in the angles of nodes."""
         nearness = 1.0 / np.maximum(norms(nodes[edges[:, 1]] - nodes[edges[:, 0]]), 1e-300)
         total = np.bincount(edges.ravel(), np.repeat(nearness, 2), len(nodes))
         return cls(edges, nearness[:, None] / total[edges])

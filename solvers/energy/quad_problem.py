@@ -24,7 +24,7 @@ WIDE = 160.0  # degrees of a single cell from which on they are
 
 @dataclass(frozen=True, eq=False)
 class Unknowns:
-    """Masks and indices of fixed nodes, and of periodic images of other nodes."""
+    """Masks and indices of fixed nodes, and of nodes that are periodic images of other nodes."""
 
     fixed: Bools
     images: Indices

@@ -34,7 +34,7 @@ LEAN = 12.0
 
 @dataclass(frozen=True, eq=False)
 class KeyTables:
-    """Key sections at `key_heights`, from hub to casing, and their plan."""
+    """Key sections of a row, at `key_heights` from hub to casing, between which nodes are interpolated."""
 
     plan: SectionPlan
     sections: tuple[KeySection, ...]

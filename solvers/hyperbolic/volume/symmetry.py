@@ -51,9 +51,9 @@ def symmetry_of(surface: Surface, axis: str | None, far: float) -> Symmetry:
 
 
 def closes_in(surface: Surface, plane: Plane) -> float:
-    """Return the mean distance of the walls that face a plane.
+    """Return the mean distance from a plane to the walls that face it.
 
-    It is infinite if the net area that faces the plane is at most a tenth of the surface.
+    The distance is infinite if the net area that faces the plane is at most a tenth of the surface.
     """
     a, b, c, d = (surface.nodes[surface.quads[:, k]] for k in range(4))
     area = 0.5 * np.cross(c - a, d - b)

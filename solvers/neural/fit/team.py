@@ -49,7 +49,7 @@ class Team:
 
 
 def team(device: Device) -> Team:
-    """Return the object of this process; under torchrun it belongs to the team of all started processes.
+    """Return the `Team` object of this process; under torchrun, all started processes train together.
 
     Raises InputError if `device` is ``cuda`` and there is no such device.
     """

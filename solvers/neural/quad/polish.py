@@ -25,7 +25,7 @@ def polished(
 ) -> tuple[Floats, list[int]]:
     """Return the network's grids (batch, 2, ni, nj) after iterations, and the number of steps for each grid.
 
-    `boundaries` have equal node counts. `steps` limits the steps of Newton's method, descent or multigrid.
+    `boundaries` have equal node counts. `head` is an index into `HEADS`. `steps` limits the iterations.
     """
     if topology == "quad":
         coarse = coarse_grids.coarse_grids(coarse_grids.sides_of(boundaries), network, head)
