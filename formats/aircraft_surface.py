@@ -52,7 +52,7 @@ class _Patches:
 def surface_body(row: Table, folder: Path) -> tuple[Body, AircraftAxes, tuple[str, ...]]:
     """Return the body that the table `row` describes, the axes of its file, and notes for the user.
 
-    The key ``patches`` may select patches of the file; the default is those with a side in the plane of
+    The key ``patches`` may select patches of the file; the default is all with a side in the plane of
     symmetry. Paths are relative to `folder`. Raises InputError if the file has no surface, or if the body has
     holes or is not one half.
     """

@@ -76,7 +76,7 @@ def place_of(point: Iterable[float]) -> str:
 def meant(word: str, known: Iterable[str], likeness: float = 0.6) -> str:
     """Return ``did you mean ...?`` with the word of `known` that is most similar to `word`, or ''.
 
-    The similarity of the two, from 0 to 1, must be at least `likeness`, unless `word` begins with the other.
+    Their similarity, from 0 to 1, must be at least `likeness`, unless `word` begins with the known word.
 
     >>> meant("max_angel", ["max_angle", "min_angle"])
     "did you mean 'max_angle'? "

@@ -23,7 +23,7 @@ _SEWN = 1e-6  # largest distance at which edges of separate faces are joined, re
 
 
 def read_models(source: Source, *, kind: str) -> Iterator[CadModel]:
-    """Yield the CAD model of a file; `kind` is its format, ``STEP`` or ``B-rep`` (that of Open Cascade).
+    """Yield the CAD model of a file; `kind` is its format, ``STEP`` or ``B-rep`` (of Open Cascade).
 
     Raises InputError if Open Cascade is not installed, the file has another format, or it has no faces.
     """

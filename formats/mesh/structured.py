@@ -63,7 +63,7 @@ def _described(block: FileBlock) -> Floats:
 def grid_of_block(coordinates: Sequence[Floats], facts: Facts, name: str) -> Grid:
     """Return the grid of a file with one block, using its metadata `facts` if there are any.
 
-    Raises InputError if the metadata do not match the nodes; other errors are those of `grids_of_file`.
+    Raises InputError if the metadata do not match the nodes, and in the cases of `grids_of_file`.
     """
     if facts.get("topology"):
         return grid_with(nodes_by_facts(coordinates, facts), facts, name)

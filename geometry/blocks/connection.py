@@ -31,7 +31,7 @@ Face: TypeAlias = Callable[[int, Side], NDArray[Any]]
 class Connection:
     """Two parts of block sides whose nodes coincide; one of them is called the side, the other the donor.
 
-    In a periodic connection, the nodes of the side coincide with the donor's after the motion `transform`.
+    In a periodic connection, the motion `transform` moves the nodes of the side onto the nodes of the donor.
     Index ranges ascend.
     """
 

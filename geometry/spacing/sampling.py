@@ -52,7 +52,7 @@ class Sampling:
     wake : float, optional
         Length of the wake of a C grid in chords; None: the far-field distance.
     wake_nodes : int, optional
-        Number of nodes along the wake, including the trailing edge; None: follows from the cell length there.
+        Number of nodes along the wake with the trailing edge. None: the cell length there determines it.
     base_nodes : int, optional
         Number of nodes on a blunt base, including both corners; odd for an O grid. None: as its width needs.
     base : float, optional

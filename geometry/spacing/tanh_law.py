@@ -16,7 +16,7 @@ class TanhLaw:
     """Vinokur's two-sided stretching s(q) from the slopes ds/dq at both ends; q and s are from 0 to 1.
 
     u = 1/2 + tanh(d (q - 1/2)) / (2 tanh(d/2)), s = u / (a + (1 - a) u), a = sqrt(end/start), sinh(d)/d =
-    1/sqrt(start end). If the latter is below 1, tan and sin replace tanh and sinh. Vinokur, J. Comput. Phys.
+    1/sqrt(start end). If start·end > 1, tan and sin replace tanh and sinh. Vinokur, J. Comput. Phys.
     50 (1983) 215-234.
     """
 

@@ -49,7 +49,7 @@ def first_cell_note(
 ) -> str:
     """Return a sentence that compares first-cell heights, from `low` to `high`, with the height `target`.
 
-    `growth` is the mean growth ratio off the wall. `where` is the word for nodes. Unless `chord` is 1,
+    `growth` is the mean growth ratio off the wall. `where` is a name for the nodes. Unless `chord` is 1,
     `target` is also given in chords.
     """
     size = (

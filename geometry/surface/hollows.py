@@ -23,7 +23,7 @@ class Hollows:
     edges : (k, 2) the two nodes of each edge.
     angles : (k,) angle of the space between the two faces, in degrees, at most 150.
     distance : (n,) distance of each node from a concave edge, along edges of cells, plus the width of the
-        cells there; infinite without concave edges.
+        cells at this edge; infinite without concave edges.
     """
 
     edges: Indices

@@ -130,7 +130,7 @@ def _near(moved: Floats, fixed: Floats) -> float:
 
 
 def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
-    """Return the unit normal (d,) of a side; None if it is bent before or after nodes move to `there`."""
+    """Return the unit normal (d,) of a side; None if it is bent before or after nodes move `there` (n, d)."""
     nodes, after = (each[piece.numbers.ravel()] for each in (table.nodes, there))
     centre = nodes.mean(axis=0)
     _, size, ways = singular_values(nodes - centre)

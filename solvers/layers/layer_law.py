@@ -18,7 +18,7 @@ def layer_arcs(
 ) -> Floats:  # fmt: skip
     """Return the distances (k, cells + 1) of nodes from the wall, on lines of `length` (k,).
 
-    The first `constant` cells have the height `first`, a number or (k,). The other heights never decrease.
+    The first `constant` cells have the height `first`, a number or (k,). Further heights never decrease.
     Their logarithms are a quadratic function of the index, and the last height is about `last` (k,). If
     `last` is infinite, the ratio r of heights is constant. Otherwise the logarithm of each ratio is at most
     the larger of log(`growth`) and (1 + `steeper`) log(r).

@@ -37,7 +37,7 @@ def section_grid(
     """Return the planar grid inside a closed curve or domain, and notes; a given grid is returned unchanged.
 
     A circle gets five blocks, with `around` cells along the circle. A four-sided outline gets one block. A
-    first-cell height applies at all sides, or at those that the request names. Raises InputError if
+    first-cell height applies at all sides, or at the sides that the request names. Raises InputError if
     parameters do not suit the shape; see also `make_grid`.
     """
     five_blocks = isinstance(shape, Circle) and not (

@@ -39,7 +39,7 @@ def refine(
 
 
 def multiplied(layout: Layout, times: int) -> Layout:
-    """Return the layout with `times` as many cells along each direction; its nodes are bitwise kept."""
+    """Return the layout with each cell divided into `times` x `times` cells; old nodes are bitwise kept."""
     chords = Chords.of(layout)
     return refine(layout, chords.counts * times, chords)
 

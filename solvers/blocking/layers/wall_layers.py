@@ -227,8 +227,8 @@ class Counts:
     Parameters
     ----------
     coarse : (chords,) counts in the first optimisation: the final counts divided by `stride` and `times`.
-    stride : factor from the counts of the first optimisation to those of the second; 1 if there is only one.
-    times : factor from the counts of the last optimisation to the final counts.
+    stride : counts of the second optimisation divided by counts of the first; 1 without a second.
+    times : final counts divided by counts of the last optimisation.
     scale : factor by which the cell lengths along walls are multiplied.
     metric : target cell sizes.
     layers : (rows,) factors that correct the number of layers of each row, from the last optimisations.

@@ -86,7 +86,7 @@ class AirfoilGrids:
 def conformal(south: Tensor, north: Tensor, nj: int, *, failed: Failed = "raise") -> Tensor:
     """Return the nodes (..., ni, nj, 2) of converged conformal O grids around airfoils.
 
-    Gradients are those of the converged solution; each backward pass solves one linear system.
+    Gradients are derivatives of the converged solution; each backward pass solves one linear system.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ def winslow(
 ) -> Tensor:  # fmt: skip
     """Return the nodes (..., ni, nj, 2) that solve Winslow's equations up to rounding errors.
 
-    Gradients are those of the converged solution; each backward pass solves one linear system.
+    Gradients are derivatives of the converged solution; each backward pass solves one linear system.
 
     Parameters
     ----------

@@ -49,7 +49,7 @@ def quads_of(datasets: Iterable[Iterable[Grid]]) -> Quads:
     """Return the domains that are both in a dataset of Winslow's grids and in one of variational grids.
 
     The first grid determines the method of a dataset. Raises InputError if one of the two methods is missing
-    or there is another one; see also `quads`.
+    or if there is a third one; see also `quads`.
     """
     groups: dict[str, list[Grid]] = {}
     for dataset in datasets:
