@@ -59,7 +59,7 @@ class Plain(typer.core.TyperCommand):
         return [word if word == "[OPTIONS]" or "..." in word else f"{word}..." for word in words]
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
-        """Write the help of the arguments, then that of the options by group."""
+        """Write the help of the arguments, then the help of the options by group."""
         from meshonet_cli.options.groups import GROUPS, IO  # which a list of all commands does not need
 
         groups: dict[str, list[tuple[str, str]]] = {"Arguments": [], **{group: [] for group in GROUPS}}

@@ -30,7 +30,7 @@ class Faces(NamedTuple):
     Parameters
     ----------
     nodes : (f, 4) point numbers; the normal points out of the owner. Consecutive numbers may be equal.
-    owner : (f,) cell of each face; at interior faces the one of the two cells with the lower number.
+    owner : (f,) cell of each face; at interior faces, the cell with the lower number.
     neighbour : (g,) the other cell of each of the g interior faces.
     """
 

@@ -63,7 +63,7 @@ class Connection:
         return replace(self, transform=None).nodes(face)
 
     def nodes(self, face: Face) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Return the nodes of the side, moved by `transform`, and those of the donor, in the side's order.
+        """Return the side's nodes, moved by `transform`, and the donor's nodes; both in the side's order.
 
         Both are (n, d) or (n, m, d). `face` is a function of block and side, such as `Grid.face`.
         """

@@ -29,8 +29,8 @@ def handedness(wall: Complexes, far: Complexes) -> tuple[int, Axis]:
     The body is given by two curves, `wall` (n,) and `far` (n,). The mirror images of both, in reversed order,
     have the opposite sign, 1 or -1. The sign is 0 if both curves are symmetric. The axis (a point and the
     square of its direction) runs from the first node of `wall` to the middle between the nodes farthest from
-    it. Node k and node n - k are partners. The sign is that of the largest distance between a node and the
-    mirror image of its partner, on `wall` or, if `wall` is symmetric, on `far`.
+    it. Node k and node n - k are partners. The sign is taken from the largest offset, along or across the
+    axis, of a node from the mirror image of its partner: on `wall` or, if `wall` is symmetric, on `far`.
     """
     a, b = farthest(wall)
     along = 0.5 * (wall[a] + wall[b]) - wall[0]

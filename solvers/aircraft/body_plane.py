@@ -134,8 +134,8 @@ def _level_with_fin(columns: Sequence[ColumnPlan], plans: Sequence[ColumnPlan]) 
 def level_patches(space: BodyMap, plan: LevelPlan, holes: Sequence[Sequence[Hole]]) -> list[Floats]:
     """Return the patches (ni, nj, 3), in s, theta, zeta (`BodyMap`), of one level around sections `holes`.
 
-    First come the patches around wings, from nose to tail, then those between wings. Two patches at the nose
-    and two at the tail follow: rows of cells, and a core that covers the tip.
+    First come the patches around wings, from nose to tail, then patches between wings. Two patches at nose
+    and two at tail follow: rows of cells, and a core that covers the tip.
     """
     levels = _beside_fins([ColumnLevel.of(*each) for each in zip(plan.columns, holes, strict=True)])
     patches = [patch for level in levels for patch in level.patches()]

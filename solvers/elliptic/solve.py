@@ -40,8 +40,8 @@ def solve(
 
     Parameters
     ----------
-    tol : residual at which the iteration ends, relative to that of the transfinite interpolation. None:
-        it ends when the estimated error of the solution is below the discretisation error.
+    tol : residual at which the iteration ends, relative to the residual of the transfinite interpolation.
+        None: it ends when the estimated error of the solution is below the discretisation error.
     max_cycles : largest number of multigrid cycles.
     initial : grid with the same node counts from which the iteration starts; None: nested iteration.
 

@@ -12,7 +12,7 @@ def sensors(boundary: Boundary, count: int) -> Floats:
     """Return `count` points of the boundary (count, 2), interpolated linearly between its nodes.
 
     On four-sided boundaries they start at the south-west corner and run counter-clockwise, at equal steps of
-    xi and eta. On O boundaries half of them, rounded up, are on the body, the others on the far field.
+    xi and eta. On O boundaries half of them, rounded up, are on the body, the rest on the far field.
     """
     if boundary.periodic:
         inner = count - count // 2

@@ -61,7 +61,7 @@ class QuadOperator(Operator):
         threads: int = 1,
         **_: Any,
     ) -> list[Solution]:
-        """Return a grid inside each boundary; its boundary nodes are exactly those of the boundary.
+        """Return a grid inside each boundary, with exactly the given boundary nodes.
 
         Boundaries with equal node counts form batches. The seconds of a solution are the seconds of the
         batch, divided by its number of boundaries.
