@@ -202,7 +202,7 @@ def _blocks(sizes: Floats) -> NDArray[np.intp]:
 
 
 def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
-    """Return two pairs of (lengths, areas) of sampled cells in view: lengths along i, then along j."""
+    """Return (lengths along i, areas) and (lengths along j, areas) of sampled cells in view."""
     i, j = np.nonzero(part.mask)
     stride = max(1, len(i) // _SAMPLE)
     i, j = i[::stride] + part.i0, j[::stride] + part.j0

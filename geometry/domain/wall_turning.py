@@ -36,7 +36,7 @@ def _turned(loop: Loop, arc: Floats, arcs: Floats, turned: Floats) -> Floats:
 
 
 def corners_between(loop: Loop, first: float, last: float) -> tuple[Floats, Indices]:
-    """Return the arc lengths of corners strictly between two arc lengths, and the number of cells at each."""
+    """Return the arc lengths of corners between two arc lengths, and how many cells should meet at each."""
     low, high = min(first, last), max(first, last)
     rounds = np.floor(low / loop.length) + np.arange(3)
     arcs = (loop.corner_arcs + rounds[:, None] * loop.length).ravel()

@@ -68,7 +68,7 @@ class BodyMap:
         return _between(self.table, along, across) + at_body * (away * away)[:, None]
 
     def arcs(self, s: Floats) -> Floats:
-        """Return the arc lengths (n,) along the meridian, from the nose, at s (n,)."""
+        """Return the arc lengths (n,) of the body's meridian, from the nose, at coordinates `s` (n,)."""
         along = s * ((_LINES - 1) / self.body.length)
         return np.clip(_between(self._arcs, along, np.zeros_like(s))[:, 0], 0.0, self.body.length)
 

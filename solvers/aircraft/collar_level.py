@@ -128,7 +128,7 @@ class CollarLevel:
 
     @classmethod
     def of(cls, plan: CollarPlan, hole: Hole) -> "CollarLevel":
-        """Return the collar of a hole."""
+        """Return the collar around the section `hole`, with the numbers of cells in `plan`."""
         plane, box = hole.plane, hole.box
         edge, nose, half = plan.edge, plan.nose, (len(plane) - 1) // 2
         outer = outer_loop(plane, box, (edge, nose))
@@ -155,7 +155,7 @@ class CollarLevel:
 
     @property
     def sine(self) -> float:
-        """Smallest sine of an angle in the collar."""
+        """Smallest sine of the angles at the corners of the collar's cells."""
         return least_sine(np.pad(self.ring[::-1], ((0, 0), (0, 0), (0, 1))))
 
     @property
@@ -222,7 +222,7 @@ class CollarLevel:
         return s[half + nose : 2 * half - edge + 1][::-1], s[edge : half - nose + 1]
 
     def collar(self) -> Floats:
-        """Return the nodes (n, rows + 1, 2) of the collar; for a fin, of half, from nose to trailing edge."""
+        """Return the collar's nodes (n, rows + 1, 2); half of them for a fin, from nose to trailing edge."""
         ring = self.ring / self.hole.scale
         if not self.hole.fin:
             return ring

@@ -42,7 +42,7 @@ class Window:
         return as_planar(nodes[self._index(self.rows(len(nodes), periodic), 0)])
 
     def put(self, nodes: Floats, periodic: bool, patch: Floats) -> None:
-        """Replace the window's inner nodes in `nodes` by the inner nodes of `patch`, a result of `cut`."""
+        """Replace the window's inner nodes in `nodes` by the inner nodes of `patch` (see `cut`)."""
         inner = (slice(1, -1),) * len(self.first)
         nodes[self._index(self.rows(len(nodes), periodic)[1:-1], 1)] = patch[inner]
         if periodic:

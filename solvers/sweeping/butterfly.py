@@ -122,7 +122,7 @@ def _side_ratio(sides: Sides) -> float:
 
 
 def filled(section: CrossSection, plan: FiveBlocks) -> Grid:
-    """Return the grid of five blocks inside a closed curve, whose boundary is the patch ``wall``."""
+    """Return the grid of five blocks inside a closed curve; its boundary is the patch ``wall``."""
     side = len(section.arcs[0]) - 1
     inner = section.inner(plan.core, plan.radial)
     lengths, sizes = section.across(plan.core, plan.radial)

@@ -35,7 +35,7 @@ class Winslow:
         return nested(nodes), nodes.new_zeros(len(nodes))
 
     def adjoint(self, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:  # noqa: ARG002 - one interface
-        """Return the derivative of a functional with respect to the boundary nodes of a solution."""
+        """Return the derivative of a functional with respect to boundary nodes, as `Equations.adjoint`."""
         line = _Linearised(nodes)
 
         def times(flat: Tensor) -> Tensor:
