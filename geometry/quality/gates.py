@@ -54,9 +54,10 @@ class Gate:
         return in_short(self._what, figure, self.compare, self.limit)
 
     def replaces(self, figure: str, compare: str) -> bool:
-        """Return whether the gate replaces a profile's limit on `figure` with the comparison `compare`.
+        """Return whether this gate takes the place of a profile's limit on `figure`.
 
-        It does if it limits the same figure and statistic in the same direction (upwards or downwards).
+        It does if it limits the same statistic of the same figure in the same direction (upwards or
+        downwards); `compare` is the comparison of the profile's limit, such as ``<=``.
         """
         return (self.metric, self.compare[0], self.statistic) == (figure, compare[0], end_of(compare))
 

@@ -30,9 +30,9 @@ class PoleCore:
 
     Parameters
     ----------
-    nodes : (b + 1, a + 1, 3) nodes of the core, oriented as the fan (the patch at the pole).
-    rows : (r, m + 1, 3) rows from the edge of the core to the column `at`.
-    at : index of the first column of the fan (m + 1, n, 3) that is not replaced.
+    nodes : (b + 1, a + 1, 3) nodes of the core, oriented as the fan, the patch (m + 1, n, 3) at the pole.
+    rows : (r, m + 1, 3) new lines of nodes around the pole, from the edge of the core outwards.
+    at : index of the first line around the pole of the fan that is kept, the last of `rows`.
     """
 
     nodes: Floats

@@ -22,7 +22,7 @@ Walls = Annotated[str | None, _option(
 
 @dataclass(frozen=True, kw_only=True)
 class BlockOptions:
-    """Options for the division of a domain into blocks; each except --assemble makes a multi-block grid."""
+    """Options of multi-block grids; giving any of them, except --assemble, asks for such a grid."""
 
     assemble: bool = _option(
         default=False, help="Combine all inputs into one domain. If one input encloses the others, they are "

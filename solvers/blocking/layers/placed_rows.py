@@ -25,7 +25,7 @@ _STEPS = 50  # of bisection, to round-off
 
 
 def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings) -> int:
-    """Return how many layers a row of blocks needs so that they do not grow too fast in most columns."""
+    """Return how many layers of cells a row of blocks needs for growth within the limit along most lines."""
     alone = rows.across[np.nonzero(rows.across == row)[0]].min(axis=1) < 0  # blocks of no other row
     columns = np.concatenate(list(compress(rows.columns(layout, row), alone)))
     first, extra = settings.first, settings.constant - 1
