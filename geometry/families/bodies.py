@@ -207,5 +207,5 @@ def arc_lengths(z: Complexes) -> Floats:
 
 
 def at_lengths(z: Complexes, length: Floats, at: Floats) -> Complexes:
-    """Return points (m,) at arc lengths `at` (m,) of a polygon `z` (n,) with arc lengths `length` (n,)."""
+    """Return points (m,) at arc lengths `at` of a polygon; its points `z` (n,) have arc lengths `length`."""
     return np.interp(at, length, z.real) + 1j * np.interp(at, length, z.imag)

@@ -24,7 +24,7 @@ class Sources:
 
     @property
     def fixed(self) -> Indices:
-        """Node indices of the sources that neither move nor slide."""
+        """Node indices of fixed sources (see `Field`): they neither move nor slide."""
         return np.flatnonzero((self.areas > 0.0) & ~self.moved & ~self.slides)
 
 

@@ -71,7 +71,7 @@ class SpanPlaces:
         return np.asarray(np.mod(start + height * wrapped(end - start), 1.0))
 
     def evened(self, planes: Sequence[SectionPlane], growth: float, pairs: Indices) -> "SpanPlaces":
-        """Return places moved until steps grow by about `growth` at most; `pairs` as in `SpanPlaces.of`."""
+        """Return places moved until steps grow by about `growth` at most; `pairs`: see `SpanPlaces.of`."""
         lines, corners = ChannelLines.of(planes), planes[0].corners
 
         def even(k: int) -> Floats:

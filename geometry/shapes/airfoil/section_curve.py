@@ -104,7 +104,7 @@ def sign_changes(curve: Curve, chord: float) -> int:
 
 
 def nose_radius(curve: Curve, middle: float, edge: Floats, chord: float) -> float:
-    """Return the radius of curvature at the leading edge (arc length `middle`); `edge`: trailing edge."""
+    """Return the nose radius; `middle` is the nose's arc length on `curve`, `edge` the trailing edge."""
     nose = curve.at(np.array([middle]))[0]
     axis = (edge - nose) / chord
     step = np.linspace(0.0, 0.2 * chord, 81)
