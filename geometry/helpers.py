@@ -39,7 +39,7 @@ class Helpers:
     @classmethod
     @contextmanager
     def at_hand(cls, most: int) -> Iterator[Self]:
-        """Provide helpers within the ``with`` block; they are stopped at its end."""
+        """Provide helper threads within the ``with`` block; they are stopped at its end."""
         helpers = cls(most)
         try:
             yield helpers

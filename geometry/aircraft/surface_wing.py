@@ -87,7 +87,7 @@ class SurfaceWing:
 
     @property
     def chord(self) -> float:
-        """The longest of `chords`."""
+        """Longest chord of the wing."""
         return float(self.chords.max())
 
     @property

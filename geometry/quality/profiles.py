@@ -84,14 +84,14 @@ class CheckResult:
 
 @dataclass(frozen=True)
 class ProfileReport:
-    """The results of the checks of one or more profiles on one grid."""
+    """Results of the checks of one or more quality profiles (sets of limits) on one grid."""
 
     names: tuple[str, ...]
     results: tuple[CheckResult, ...]
 
     @property
     def name(self) -> str:
-        """The names of the profiles, as text."""
+        """Names of the quality profiles, as text."""
         return ", ".join(self.names)
 
     @property

@@ -130,7 +130,7 @@ class Stack:
 
     @property
     def chord(self) -> float:
-        """The longest chord."""
+        """Longest chord of the sections."""
         return float(self.chords.max())
 
     @property

@@ -13,7 +13,7 @@ from meshonet.geometry.errors import InputError
 
 @dataclass(frozen=True)
 class TanhLaw:
-    """Vinokur's two-sided stretching s(q) from the slopes ds/dq at both ends; q and s are from 0 to 1.
+    """Vinokur's two-sided stretching s(q) from ds/dq at `start` and `end`; q and s are from 0 to 1.
 
     u = 1/2 + tanh(d (q - 1/2)) / (2 tanh(d/2)), s = u / (a + (1 - a) u), a = sqrt(end/start), sinh(d)/d =
     1/sqrt(start end). If start·end > 1, tan and sin replace tanh and sinh. Vinokur, J. Comput. Phys.

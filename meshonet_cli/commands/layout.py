@@ -21,7 +21,7 @@ _sampling = o.option_of(o.SAMPLING)
 # fmt: off
 @dataclass(frozen=True, kw_only=True)
 class LayoutFiles(Files):
-    """Files of layouts."""
+    """Options for the files of block layouts."""
 
     output: Annotated[str, o.option_of(o.IO)(
         "-o", "--output", metavar="LAYOUT.json", help="File to write, or - for standard output. For several "

@@ -20,7 +20,7 @@ _sampling, _volume = o.option_of(o.SAMPLING), o.option_of(o.VOLUME)
 # fmt: off
 @dataclass(frozen=True, kw_only=True)
 class SectionFiles(Files):
-    """Files of volumes, and the format of their sections."""
+    """Options for the files of volumes, and for the format of their sections."""
 
     output: o.Output
     from_format: o.From = None

@@ -50,7 +50,7 @@ class Direction:
 
     @cached_property
     def reach(self) -> Floats:
-        """The longer of the two steps at each node (n,)."""
+        """The longer of the steps to both neighbours of each node (n,)."""
         return np.maximum(*self._steps)
 
     @cached_property

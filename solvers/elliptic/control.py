@@ -22,19 +22,19 @@ class Factors:
 
     @classmethod
     def none(cls, ni: int, nj: int) -> Factors:
-        """Return the zero function on ni x nj nodes, a sum without terms."""
+        """Return a sum without terms, which is zero at all ni x nj nodes."""
         return cls(np.zeros((0, ni)), np.zeros((0, nj)))
 
     def values(self) -> Floats:
-        """Return the values of the function at all nodes (ni, nj)."""
+        """Return the values of the sum at all nodes (ni, nj)."""
         return np.asarray(product(self.along.T, self.across))
 
     def kept(self, i: Indices, j: Indices) -> Factors:
-        """Return the function only at the nodes whose indices are in `i` and `j`."""
+        """Return the factors only at the nodes whose indices are in `i` and `j`."""
         return Factors(np.ascontiguousarray(self.along[:, i]), np.ascontiguousarray(self.across[:, j]))
 
     def scaled(self, part: float) -> Factors:
-        """Return the function multiplied by `part`."""
+        """Return the factors of the sum multiplied by `part`."""
         return replace(self, along=part * self.along)
 
     def __add__(self, other: Factors) -> Factors:

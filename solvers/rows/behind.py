@@ -26,8 +26,8 @@ def even_behind(sections: Sequence[KeySection], columns: Indices) -> tuple[KeySe
     """Return the sections, at `key_heights`, with nodes behind the blade on smooth lines along the span.
 
     On these lines, positions along the passage (`SectionPlane.shares`) and theta relative to the trailing
-    edge are polynomials of the height. The nodes `columns` (k, m) of layers stay, and nodes near them move by
-    a fraction. All nodes move less if cells would get too small.
+    edge are polynomials of the height. The nodes `columns` (k, m) of layers stay, and nodes near them move
+    less. All nodes move less if cells would get too small.
     """
     mesh = sections[0].layout.mesh
     values = []

@@ -80,7 +80,7 @@ class Disc:
 
     @property
     def note(self) -> str:
-        """Note on more cells than requested, or an empty text."""
+        """Note if the disc has more cells than requested; else empty."""
         wanted = self.cells
         if wanted is None or self.side > _LEAST // 4 or self.count(self.side) <= 1.1 * wanted:
             return ""

@@ -202,6 +202,6 @@ def self_crossing(path: Path, reach: float) -> tuple[float, float, float] | None
 
 
 def reach_of(section: Grid) -> float:
-    """Return the largest distance of a section from its origin."""
+    """Return the largest distance of the nodes of a section from its origin."""
     corners: Sequence[Floats] = [block.nodes.reshape(-1, 2) for block in section.blocks]
     return max(float(np.hypot(*each.T).max()) for each in corners)

@@ -208,7 +208,7 @@ def _ring(loop: Loop, arcs: Floats, levels: Floats) -> Ring:
 
 
 def column_weights(index: Floats, low: Indices, high: Indices) -> tuple[Floats, Indices]:
-    """Return weights (k, 4) of four columns to interpolate at a fractional `index` (k,), and the first (k,).
+    """Return weights (k, 4) of four columns for interpolation at `index` (k,), and the first columns (k,).
 
     Columns before `low` (k,) or beyond `high` (k,), which are at the nearest corners, have zero weights.
     """

@@ -59,8 +59,8 @@ def march_surface(
 ) -> Solution:
     """Return the volume grid between a surface and a far field, with one block for each patch.
 
-    Blocks have i and j of their patches; k goes from the wall (``bottom``) to the far field (``top``). Sides
-    in planes of symmetry are patches ``symmetry``, sides at free edges ``free``; all other sides are
+    Directions i and j are as in the patch; k goes from wall (``bottom``) to far field (``top``). Sides in
+    planes of symmetry are patches ``symmetry``, sides at free edges are patches ``free``; all other sides are
     connected. Chan and Steger, Appl. Math. Comput. 51 (1992) 181; ``kernels/surfaces/step.c`` lists the
     differences.
 
