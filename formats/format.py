@@ -79,7 +79,7 @@ class Format:
         return str(place / f"{place.resolve().name}{self.suffixes[0]}")
 
     def with_options(self, text: str) -> Format:
-        """Return the format with options, words between commas; words after a colon replace earlier ones.
+        """Return the format with comma-separated options; options after a colon override earlier options.
 
         Raises InputError if an option is unknown, or if two exclude each other.
         """

@@ -32,7 +32,7 @@ SECOND_PRONG = 0.25  # as in kernels/conformal/lift.c
 class Corner:
     """The map of Karman and Trefftz that straightens a corner with exterior angle k pi.
 
-    It maps v to v' by ((v-p)/(v-q))^(1/k) = (v'-P)/(v'-Q). Attributes are numbers or torch tensors.
+    ((v-p)/(v-q))^(1/k) = (v'-P)/(v'-Q) maps v to v', the corner p to P, and a point q inside the body to Q.
     """
 
     p: Any

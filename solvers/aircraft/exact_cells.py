@@ -15,7 +15,7 @@ def at_height(space: BodyMap, wall: Floats, beside: Floats, first: float) -> Flo
     """Return the places (..., 3) at the distance `first` from `wall` on lines towards `beside` (..., 3).
 
     All places are s, theta, zeta of `BodyMap`; the distance is physical. The positions on the lines are found
-    by iteration, also where the distance is a power of the position, as at a pointed nose.
+    by iteration, even where the distance is not linear in the position, as at a pointed nose.
     """
     away, foot = beside - wall, space.points(wall)
     scale = inverse = np.ones(away.shape[:-1])

@@ -86,7 +86,7 @@ def _frames(corners: Floats) -> Floats:
 
 
 def affine(places: Floats, moved: Floats, turns: Floats) -> Floats:
-    """Return a (d numbers) and B (d² numbers) for each node, which moves a point x by a + B x: (d + d², n).
+    """Return (d + d², n): a (d numbers) and B (d² numbers) of each node, whose motion of x is a + B x.
 
     `places` and `moved` (n, d) are the old and new positions of the nodes, `turns` (n, d, d) their rotation
     matrices minus the identity.

@@ -189,8 +189,8 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
         First-cell heights at single sides of a four-sided domain.
     slide : bool, optional
         Whether nodes move along the walls south and north, so that grid lines leave them at right angles.
-        None: they move if the method is ``auto`` or ``best``, if south or north has a first-cell height, and
-        if meshonet has placed the nodes of the walls.
+        None: they move if three conditions are true: the method is ``auto`` or ``best``, south or north has
+        a first-cell height, and meshonet has placed the nodes of the walls.
     wall_angle : float, optional
         Angle between grid lines and walls in degrees, for ``steger-sorenson``.
     coarse : int or 'auto', optional

@@ -66,8 +66,8 @@ def quads_of(datasets: Iterable[Iterable[Grid]]) -> Quads:
 def quads(variational: Samples, winslow: Samples) -> Quads:
     """Return the domains whose grids are in both datasets, scaled to unit size.
 
-    Raises InputError if no domain is in both, or unless all are four-sided grids with `LATENT` nodes along xi
-    and eta, or all are O grids with `AROUND` nodes along xi.
+    Raises InputError if no domain is in both. All grids must be four-sided with `LATENT` nodes along xi and
+    eta, or all must be O grids with `AROUND` nodes along xi.
     """
     around = variational.topology == "o"
     wanted = ("o", AROUND, LATENT) if around else ("quad", LATENT, LATENT)
