@@ -48,7 +48,7 @@ class Connection:
 
     @property
     def ends(self) -> tuple[tuple[int, Side, Range], tuple[int, Side, Range]]:
-        """Block, side and index range of the side, then the same of the donor."""
+        """Block number, name of the side and index range: first of the side, then of the donor."""
         return (self.block, self.side, self.range), (self.donor, self.donor_side, self.donor_range)
 
     def pairs(self, values: Sequence[NDArray[Any]]) -> tuple[NDArray[Any], NDArray[Any]]:

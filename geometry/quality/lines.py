@@ -101,9 +101,9 @@ def _of(tallies: Iterable[Tally], *, kept: bool) -> Extreme | None:
 def part_of_values(
     place: tuple[int, ...], axis: int, inside: bool, values: Iterable[Floats], *, kept: bool = True
 ) -> BlockLines:
-    """Return growth and bend of the grid lines along `axis` through an array of nodes.
+    """Return growth and turning of the grid lines along `axis` through an array of nodes.
 
-    `values` are growth and, if computed, bend, each (m, n[, l]). `place` (block, i, j[, k]) is the first
+    `values` are growth and, if computed, turning, each (m, n[, l]). `place` (block, i, j[, k]) is the first
     node. `inside` says that the nodes are inside the block, not on a side. With `kept`, values are stored for
     percentiles.
     """

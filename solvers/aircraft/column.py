@@ -147,7 +147,7 @@ class ColumnLevel:
         return self.levels[0].low_and_top[0] if self.below is None else self.below
 
     def above(self) -> tuple[float, tuple[float, float]]:
-        """Return the physical distance from wing collar to fin collar, and the cell lengths next to each."""
+        """Return the physical distance from wing collar to fin collar, and the cell lengths at both ends."""
         wing, fin = self.levels
         low, high = self._gap
         rho = 0.5 * float(wing.hole.scale[1] + fin.hole.scale[1])

@@ -59,7 +59,7 @@ class Passage:
         """Return the passage around a closed front (the blade, or the outer edge of its layers).
 
         Blocks end at the distances `near` (in pitches) before and behind the front, or at `inlet` and
-        `outlet` if these are smaller. By default, `centre` is the point inside that is farthest from it.
+        `outlet` if these are smaller. By default, `centre` is the point farthest inside the front.
         """
         points = front.curve.points
         centre = inner_point(points) if centre is None else centre

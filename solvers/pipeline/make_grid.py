@@ -75,7 +75,7 @@ def make_grid(shape: Shape, request: GridRequest) -> Result:
 
 
 def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result | Exception]:
-    """Yield the grid of each shape, or the error in which it ended, in the order of the shapes.
+    """Yield the grid of each shape, or the error that occurred, in the order of the shapes.
 
     Some methods solve several shapes together. They then read a limited number of shapes ahead, and their
     grids differ from the grids of separate calls in the last digits.
@@ -90,7 +90,7 @@ def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result
     Yields
     ------
     Result or Exception
-        The grid of a shape, or the error in which its computation ended.
+        The grid of a shape, or the error that ended its computation.
 
     Raises
     ------

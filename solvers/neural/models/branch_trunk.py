@@ -77,7 +77,7 @@ class DeepONet(Architecture):
 class MIONet(DeepONet):
     """One trunk and two branches, for x and for y of boundary points, whose features are multiplied.
 
-    ``x = (branch_x(s_x) * branch_y(s_y))[:k] . trunk(xi, eta) + b``; the same for y with ``[k:]``. Jin, Meng
+    ``x = (branch_x(s_x) * branch_y(s_y))[:k] . trunk(xi, eta) + b``; y has features ``[k:]``. Jin, Meng
     & Lu, SIAM Journal on Scientific Computing 44 (2022) A3490.
     """
 

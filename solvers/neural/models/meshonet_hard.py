@@ -67,7 +67,7 @@ class MeshONetHard(Architecture):
         return {**fixed, "fixed/modes": _modes(targets, self.modes)} if self.modes else fixed
 
     def seen(self, xp: Any, points: Any) -> Any:
-        """Return the trunk's inputs at `points` (p, 2): their lift, and B; with `modes` just `points`."""
+        """Return lift(xi, eta) and B at `points` (p, 2), side by side; with `modes`, return `points`."""
         if self.modes:
             return points
         xi, eta = points[:, :1], points[:, 1:]

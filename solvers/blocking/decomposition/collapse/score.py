@@ -48,7 +48,7 @@ def score(blocks: BaseComplex, price: float = PRICE, wanted: Floats | None = Non
 def size_spread(blocks: BaseComplex, wanted: Floats | None) -> float:
     """Return how uneven sizes are: the mean square of log(length of a block side / mean over its chord).
 
-    All sides of a chord have the same number of cells. Means are weighted by the areas of the blocks. If
+    All sides of a chord (row of blocks) have the same number of cells. Means are weighted by block areas. If
     target lengths `wanted` (e,) of edges are given, lengths are divided by them.
     """
     lengths = log(blocks.side_lengths(wanted))
