@@ -7,20 +7,26 @@ from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.ties import first_least
 from meshonet.solvers.rows.across import ChannelLines
 
+FARTHEST = 0.2
+"""Largest move of a node around the blade; with larger ones, lines along the span fold around its edges."""
+
 
 def opposite_places(places: Floats, pairs: Indices, lines: ChannelLines) -> Floats:
     """Return coordinates u (k,) of nodes clockwise around a blade; for each node at u there is one at 1 - u.
 
     k is even, and both edges have a node, so that blocks in a gap are not skewed. Each of `pairs` (p, 2) is a
     node of the upper and a node of the lower side, which a grid line across the channel joins; pairs begin at
-    the leading edge. The node there is chosen so that these grid lines deviate least from `lines`.
+    the leading edge. The node there is chosen so that these grid lines deviate least from `lines`, and that
+    no node moves farther than `FARTHEST`, if possible.
     """
     both = _both_sides(places)
     k, half = len(places), len(places) // 2
     around = np.concatenate([both, 1.0 - both[half - 1 : 0 : -1]])
     upper, lower = pairs[0]
     tries = [np.roll(around, lead) for lead in lower + np.arange((upper - lower) % k + 1)]
-    return first_least(tries, key=lambda each: lines.leaning(each, pairs))
+    moves = np.array([np.abs(wrapped(each - places)).max() for each in tries])
+    near = np.flatnonzero(moves <= max(FARTHEST, float(moves.min())))
+    return first_least([tries[k] for k in near], key=lambda each: lines.leaning(each, pairs))
 
 
 def _both_sides(places: Floats) -> Floats:

@@ -33,6 +33,16 @@ def test_cells_are_valid_with_good_angles(gap: str) -> None:
     assert quality.metrics["max_angle"].max < 150.0
 
 
+@pytest.mark.parametrize("staggers", [(-42, -64, -65, -65), (59, 60, 50, 45)])
+def test_fans_of_high_stagger_and_low_solidity_have_valid_gaps(staggers: tuple[float, ...]) -> None:
+    """All nodes at the tip are opposite each other; moved far around the blade for that, cells fold."""
+    profiles = [blade_row.profile(r, s) for r, s in zip((1.95, 2.3, 2.7, 3.02), staggers, strict=True)]
+    row = Row(tuple(profiles), blade_row.HUB, blade_row.SHROUD, 12, tip_gap=0.025)
+    quality = make_row(row, RowRequest(first_cell=FIRST, cells=20_000)).grid.quality()
+    assert quality.folded == 0
+    assert quality.metrics["scaled_jacobian"].min > 0.2
+
+
 @pytest.mark.parametrize(
     ("gap", "ends"), [("none", set()), ("tip", {"tip"}), ("hub", {"foot"})], ids=["none", "tip", "hub"]
 )
