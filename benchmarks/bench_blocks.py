@@ -237,7 +237,7 @@ VALID = """\
 BESIDE = """
 ## Comparison with Gmsh
 
-Gmsh meshed a sample of the domains with its algorithm for quadrilaterals, 11, and with about as many cells as
+Gmsh meshed a sample of the domains with its algorithm 11, for quadrilaterals, and with about as many cells as
 meshonet. The CPU time of Gmsh is the time to mesh; that of meshonet is the time of the whole command, with
 reading and writing. The last five columns are medians over the domains.
 

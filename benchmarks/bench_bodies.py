@@ -204,14 +204,14 @@ both with the solvers. CPU times are medians, for one thread.
   whose Winslow grid has folded cells do not count.
 - *distance*: relative L2 distance to the converged solution of Winslow's equations.
 
-Bodies for which one of the two solvers fails are left out: 2 of 40.
+Bodies for which Winslow's or the variational solver fails are left out: 2 of 40.
 """
 TAIL = """
 ## Conclusions
 
 - **Default**: `infer` without `--model` uses `hole-o` only for [compact
   bodies](../theory/operators.md) for which the conformal map fails.
-- **Quality**: all 44 grids of `hole-o --polish 5` are valid, with a gain of 93 to 96 %.
+- **Quality**: all 44 grids of `hole-o --polish 5` are valid. The gain in mean angle is 93 to 96 %.
 - **Time**: `hole-o --polish 5` takes about three times as long as Winslow's solver, and a third of the time
   of the variational solver.
 - **Limits**: around bodies that are not compact, such as clips, crescents and angle sections, the grids of

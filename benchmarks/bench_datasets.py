@@ -48,8 +48,8 @@ batch, and the time to read a sample. Times are wall-clock times of one process.
 some measurements.
 
 A large dataset consists of files called *parts* and of an *index file*, which presents all parts as one HDF5
-file ([large datasets](../guide/datasets.md)). Each grid here has only 5 x 4 nodes, so that the solver takes
-hardly any time.
+file ([large datasets](../guide/datasets.md)). Each grid here has only 5 x 4 nodes and is made without a
+solver.
 """
 READING = """
 ## Reading
@@ -73,7 +73,7 @@ TAIL = """
 ## Conclusions
 
 - **Memory** does not grow with the number of grids: 63 MB after 100,000 grids, 64 MB after a million.
-- **Writing** takes 0.3 ms per grid, besides the solver. The index file of 1,000 parts takes 4 s.
+- **Writing** takes 0.3 ms per grid. The index file of 1,000 parts takes 4 s.
 - **Reading** the nodes of a sample takes 5 ms with 1,000 parts and 46 ms with 10,000 parts. By default a part
   therefore has 1,000 grids, or fewer if it would exceed 256 MiB.
 - **Zarr** takes 1.6 ms to read a sample from 200 files, HDF5 0.6 ms.

@@ -47,12 +47,12 @@ Deformations:
 
 Methods:
 
-- *IDW*: inverse-distance weighting of the displacements of the boundary nodes, with weights r^-3 (Witteveen,
-  Bijl, AIAA 2009-3996).
+- *IDW*: inverse-distance weighting of the displacements of the boundary nodes, with weights r^-3 at the
+  distance r (Witteveen, Bijl, AIAA 2009-3996).
 - *IDW, rotations*: weighting of displacements and rotations, with the exponents -3 and -5 (Luke, Collins,
   Blades, J. Comput. Phys. 231 (2012) 586-601).
-- *deform*: as *IDW, rotations*, but with the exponents -2 and -4 and groups of distant boundary nodes.
-  If cells are folded, `deform` repeats the deformation in several steps (here for {steps} deformations).
+- *deform*: as *IDW, rotations*, but with the exponents -2 and -4, and distant boundary nodes in groups. If
+  cells are folded, `deform` repeats the deformation in several steps (here for {steps} deformations).
 
 Columns:
 

@@ -80,7 +80,7 @@ CONCLUSIONS = """
 ## Conclusions
 
 - **Time**: by default a Winslow grid takes 0.03 to 0.05 s on 400x400 nodes, and 3.5 to 4.0 s on 3200x3200
-  nodes. A residual of 1e-8 takes two to four times as long.
+  nodes. With the rule *to 1e-8* it takes two to four times as long.
 - **Folded cells**: only grids of the wrench have folded cells. `solve-pde` repairs them.
 - **First cells**: with the control functions of Thomas and Middlecoff the median first-cell height is the
   prescribed height on the arch, and 1.8 times this height on the hexagon.
@@ -160,7 +160,7 @@ def conformal(n: int) -> Floats:
 def order() -> Iterator[str]:
     """Yield errors against the conformal map, and the fitted slope."""
     yield "\n## Order of convergence\n"
-    yield "The exact grid is a rectangle mapped by z = exp ζ. The error is the largest distance from it.\n"
+    yield "The exact grid is a rectangle mapped by exp ζ. The error is the largest distance of a node from it.\n"
     yield "| nodes | error |\n| --- | --- |"
     counts, errors = np.array([17, 33, 65, 129, 257]), []
     for n in counts.tolist():

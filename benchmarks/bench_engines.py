@@ -39,8 +39,8 @@ HEAD = """# Parallel engines for batches
 <!-- made by python benchmarks/bench_engines.py --airfoils FOLDER --page docs/benchmarks/engines.md -->
 
 Use this page to choose an *engine*, which distributes the inputs of a batch over processes: Python's own
-processes (`--jobs`), Dask or MPI. It gives the speed of the engines, and what is lost if a process is killed.
-[Many grids on many machines](../guide/many-machines.md) explains how to use them.
+processes (`--jobs`), Dask or MPI. The page gives the speed of the engines, and what is lost if a process is
+killed. [Many grids on many machines](../guide/many-machines.md) explains how to use them.
 """
 SPEED = """
 ## Speed and memory

@@ -51,8 +51,8 @@ of the table are the median and the 90th percentile over the shapes; folded cell
 
 - *files*: airfoil files with a *sharp* or a *blunt* trailing edge. In O grids a blunt edge is *rounded*
   (`--te round`) or kept (*exact*, `--te exact`). In C grids it is closed by a wedge (`--te wedge`).
-- *procedural airfoils*: random airfoils that a formula generates, each with a random law of `--spacing` for
-  the wall nodes. On some walls the lengths of adjacent cells differ by a factor of four.
+- *procedural airfoils*: random airfoils that a formula generates, each with a random distribution of the wall
+  nodes. On some walls the lengths of adjacent cells differ by a factor of four.
 - *nodes*: number along wall and wake x number away from them. In C grids about 140 of 250 nodes lie on the
   wall.
 - *relative error of first-cell height*: maximum over the wall nodes of all shapes.

@@ -33,7 +33,7 @@ in grid quality and in CPU time of one thread. The case is Kershaw's map of the 
 compresses the cells in six layers. The smaller its parameter ε, the stronger is the compression; ε = 1 gives
 the uniform grid.
 
-- *Kershaw's grid*: the grid of the cube by this map. meshonet gets its six faces and keeps their nodes.
+- *Kershaw's grid*: a uniform grid, deformed by this map. meshonet gets its six faces and keeps their nodes.
 - *TMOP*: MFEM's mini-app `mesh-optimizer` with `-mid 303 -tid 1`, started from Kershaw's grid. Its Newton
   method takes at most 100 MINRES iterations per step.
 - *objective*: mean over the cells of the integral of |**T**|² / (3 det(**T**)^⅔) − 1, which is 0 for cubes.

@@ -50,8 +50,8 @@ solvers get the same boundary nodes.
 - *folded*: grids of `meshonet.layer` with folded cells. *folded in torch only*: of these, the grids for which
   the compiled solver folds no cells.
 - *CPU ms*: CPU time to compute a grid, in milliseconds.
-- *gradient*: CPU time of the gradient with respect to all boundary nodes, divided by the CPU time of the
-  grids.
+- *gradient*: CPU time to differentiate a function of the grid by the boundary nodes, divided by the CPU time
+  of the grids.
 
 Airfoils without a conformal map are left out. Rows with about 30 grids use the first 32 shapes only.
 """

@@ -119,7 +119,7 @@ def sections(options: argparse.Namespace, kept: Kept):  # type: ignore[no-untype
 
 def airfoil_tables(options: argparse.Namespace):  # type: ignore[no-untyped-def]
     """Yield title, shapes, how much finer the reference is, and the ways where they are not all."""
-    yield "Procedural airfoils, random spacing laws, 200x200", random_airfoils(options.count, 200), 4, None
+    yield "Procedural airfoils, random spacing, 200x200", random_airfoils(options.count, 200), 4, None
     if options.files:
         for spacing in (None, "cosine", "uniform"):
             title = f"Airfoil files, {spacing or 'default'} spacing, 200x200"
@@ -145,7 +145,7 @@ def folds(kept: Kept, count: int) -> str:
 
     for spacing in ("conformal", "cosine", "curvature", None):
         shapes = random_airfoils(count, 200, spacing)  # type: ignore[arg-type]
-        label = "random law, random cell lengths at both edges" if spacing is None else str(spacing)
+        label = "random, with random cells at leading and trailing edge" if spacing is None else str(spacing)
         folds = [kept.row(("folds", label, one.name), partial(folded, one)) for one in shapes]
         share = 100.0 * (1.0 - np.array(folds).mean(axis=0))
         lines.append(f"| {label} | {share[0]:.1f} | {share[1]:.1f} |")
@@ -250,13 +250,13 @@ Terms and columns:
 
 - *procedural airfoils*: random airfoils that a formula generates; none was used to train a network.
   *spacing*: how the wall nodes are distributed (`--spacing`).
-- *(60)* in a heading: number of shapes. The tables leave out those without a converged solution of Winslow's
+- *(60)* in a heading: number of shapes. The tables leave out shapes without a converged solution of Winslow's
   equations.
 - *grids without folded cells*: share of the grids, before repair.
 - *distance*: root mean square distance of the nodes from those of a reference grid, divided by the root mean
   square distance of the reference nodes from the centre of the shape.
 - *reference grid*: Winslow's converged solution, extrapolated from two grids; the finer of them has 2 or 4
-  times as many cells in each direction as the tested grid. With uniform spacing its error is about 1e-4. For
+  times as many cells in each direction as the tested grid. Its error is about 1e-4 for uniform spacing. For
   the rows *variational* and *quad-general* the reference grid is that of the row *variational, all nodes*.
 - *near the wall*: only nodes within 1.5 chords of the centre of the airfoil. In four-sided domains:
   at each side, the nearest 10 % of the rows.
@@ -294,7 +294,7 @@ WHICH = """
   ms with the polished network and 8.9 ms with Winslow's equations on all nodes. Near the wall `infer` is
   closer to the reference grid than the network alone, in every table of airfoils on 200x200 nodes.
 - **Folded cells**: none of 100 grids of `infer` around procedural airfoils has folded cells before repair. Of
-  Winslow's grids 5 to 31 % have some, depending on the spacing law.
+  Winslow's grids 5 to 31 % have some, depending on the spacing.
 - **Four-sided domains**: use the variational method. On 65x65 nodes its mean angle is 7 % smaller than that
   of Winslow's grids, and no variational grid has folded cells. The method takes 8.6 ms, or 5.4 ms with
   `--coarse 33`.

@@ -250,7 +250,7 @@ TAIL = """
 - **Single precision**: in Python `load("quad-general").solve(boundaries, "off", dtype="float32")` takes 0.6
   ms of CPU time per grid.
 - **Winslow's grid**: use `solve-pde`. On 65 x 65 nodes, Winslow's solver takes 2.8 ms and `quad-winslow` 4.0
-  ms.  On 385 x 385 nodes, `quad-winslow` is about as fast and as accurate as *Winslow --coarse 65*.
+  ms. On 385 x 385 nodes, `quad-winslow` is about as fast and as accurate as *Winslow --coarse 65*.
 """
 
 if __name__ == "__main__":

@@ -228,15 +228,15 @@ are for one thread. For the methods see [elliptic grids](../theory/elliptic.md) 
 grids](../theory/variational.md).
 
 - *arch*, *hexagon*, *wrench*: shapes of the MeshONet paper (arXiv 2501.11937). *bump*: a square with a half
-  disc cut off.
+  disc cut out of the south side.
 - *--coarse N*: the solver runs on N x N nodes, and the solution is interpolated to all nodes.
 - *network `quad-general`*: a [network](quad-operator.md) that predicts the variational grid.
 - *infer*: `infer` without options; around airfoils, Winslow's equations after a conformal map.
 - *NACA 0012-sharp*: NACA 0012 with a closed trailing edge.
 - *folded cells*: number before repair.
-- *maximum*, *99th percentile*, *mean*: over the cells of the grid; for random domains, averages of these
-  values. The maximum cannot be below the largest corner angle of the boundary (arch 147.5 degrees, hexagon
-  135 degrees).
+- *maximum*, *99th percentile*, *mean*: of the largest angles of all cells; for random domains, averages of
+  these values. The maximum cannot be below the largest corner angle of the boundary (arch 147.5 degrees,
+  hexagon 135 degrees).
 - *deviation from 90 degrees at the sides*: mean over the grid lines that leave the four sides.
 - *distance to the solution on all nodes*: relative L2 distance from the grid of the same method without
   `--coarse`. For `quad-general`: from the grid of `variational`.

@@ -51,8 +51,8 @@ NETWORKS = """
 
 ## Networks trained for a short time
 
-The names after `train --model` are the [networks of the MeshONet paper](../theory/paper-models.md) and its
-baselines.
+The names after `train --model` are [MeshONet and other networks](../theory/paper-models.md) that predict
+grids.
 
 - `mgnet` and `meshnet` are trained with 500 steps for one geometry, here for the first shape of each kind.
   The training is part of their CPU time.
@@ -76,8 +76,8 @@ of the MeshONet paper](paper/index.md) gives errors after longer training.
    (n, nj, 2) and `names`. For a body, south is the body, clockwise, and north is the circle. West and east are
    the two sides of one cut from the body to the circle; your program may move the nodes of this cut.
 
-   With `--plot3d` each kind is also a folder `KIND` with a 2D ASCII Plot3D file for each shape. The four
-   blocks of the file are the sides.
+   With the option `--plot3d` each kind is also a folder `KIND` with a 2D ASCII Plot3D file for each shape.
+   The four blocks of the file are the sides.
 
 2. Run your program. It gets two paths: the boundaries to read, and the grids to write.
 

@@ -43,8 +43,8 @@ The paper shows the largest angle in colour maps without numbers. It states in w
 are better than those of TFI and of the PDE solver. The table compares the largest angles, averaged over the
 test grids; the grids of MeshONet have the boundary pasted.
 
-- *measured*: MeshONet's largest angle is *below*, *above* or *equal* to the other one; *equal* is a
-  difference of at most 0.1 degrees.
+- *measured*: MeshONet's largest angle is *below*, *above* or *equal* to that of TFI or PDE; *equal* is
+  a difference of at most 0.1 degrees.
 - *claimed*: *below* stands for "better", *equal* for "as good", and *above* for "slightly worse". Of the
   semicircle the paper says only that MeshONet's grids are not always better.
 """
