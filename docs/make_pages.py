@@ -44,7 +44,7 @@ train` repeats the training.
 | `widths` | U-Net: channels on each level, in units of eight, the finest level first |
 | `blocks` | U-Net: residual blocks on each level, on the way down and again on the way up |
 | `layers`, `width`, `modes` | Fourier neural operator: layers, channels, Fourier modes in a layer |
-| `basis` | Fourier neural operator: basis functions of its output, from wall to far field |
+| `basis` | Fourier neural operator: number of basis functions in η of its output |
 """
 ERRORS_HEAD = """# Held-out errors of the shipped models
 

@@ -16,16 +16,16 @@ WallAngle = Annotated[float | None, _option(
 Slide = Annotated[bool | None, _option(
     "--slide/--no-slide", help="Move wall nodes along the walls until grid lines leave the walls at right "
     "angles: on south and north of a four-sided domain, or on all sides of a multi-block grid that is read. "
-    "[default: --slide if --method is auto, south or north has a first cell, and the input gives their "
-    "curves without nodes; else --no-slide]",
+    "[default: --slide if --method is auto, south or north has a first cell, and their nodes are not given; "
+    "else --no-slide]",
 )]
 FirstCell = Annotated[str | None, _option(
     "--first-cell", "--wall-spacing", metavar="H|WALL=H,...", help="Height of the first cell at walls, in "
     "the unit of the input. In a one-block grid around a body the unit is the chord of an airfoil, or the "
     "largest extent of another body. WALL=H,WALL=H applies to the named walls only. H applies to the body; "
-    "to south, north and sides named wall of a four-sided domain; to the holes of a multi-block grid or, "
-    "without holes, to its sides if one is named inlet, outlet, axis, symmetry or farfield. H does not apply "
-    "to sides with these names. [default: no layers]",
+    "to south, north and sides named wall of a four-sided domain; to the holes of a multi-block grid. If "
+    "there are no holes, H applies to all sides, provided that one is named inlet, outlet, axis, symmetry or "
+    "farfield. It never applies to sides with these names. [default: no layers]",
 )]
 YPlus = Annotated[float | None, _option(
     metavar="Y", help="y+ at the height of the first cell, instead of --first-cell; at the cell centre it is "

@@ -37,9 +37,9 @@ class SamplingOptions:
     res: Resolution = None
     topology: TopologyName = _option(
         default="auto", help="Topology of the grid. quad: four-sided. o: around a body. c: around an airfoil "
-        "and its wake; NI includes both sides of the wake. auto: c with a first cell around an airfoil whose "
-        "trailing edge is sharp (not in tfi); o around other airfoils, and around outlines with fewer than "
-        "four convex corners; else quad.",
+        "and its wake; NI includes both sides of the wake. auto: o around airfoils, but c if the trailing "
+        "edge is sharp and there is a first cell (not in tfi); o around outlines with fewer than four convex "
+        "corners; else quad.",
     )
     spacing: SpacingName = _option(
         default="auto", help="Distribution of the nodes along walls. uniform: equal cells. cosine, tanh: "
@@ -58,8 +58,8 @@ class SamplingOptions:
     )
     te: Literal["auto", "exact", "round", "wedge"] = _option(
         default="auto", help="Shape of a blunt trailing edge. exact: unchanged. round: corners rounded. "
-        "wedge: closed by a wedge. auto: exact in O grids, and in marched C grids whose base is higher than "
-        "10 first cells, or than both 0.005 chords and one first cell; else wedge.",
+        "wedge: closed by a wedge. auto: exact in O grids; exact in marched C grids if the base is at "
+        "least 10 first cells high, or one first cell and 0.005 chords; else wedge.",
     )
     far_field: float | None = _option(
         metavar="R", help="Smallest distance of the far field from the middle of the body, in chords of a "
