@@ -40,12 +40,7 @@ def height_note(y_plus: str, reynolds: float | None, where: str, height: str) ->
 
 
 def first_cell_note(
-    low: float,
-    high: float,
-    target: float,
-    growth: float | None,
-    where: str = "wall node",
-    chord: float = 1.0,
+    low: float, high: float, target: float, growth: float | None, where: str = "wall node", chord: float = 1.0
 ) -> str:
     """Return a sentence that compares first-cell heights, from `low` to `high`, with the height `target`.
 

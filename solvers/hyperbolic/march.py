@@ -36,19 +36,15 @@ from meshonet.solvers.stages import filling
 
 FADE_ROWS = 12.0  # rows over which the correction of the first cell fades out
 NEAREST, FARTHEST = 1.001, 1.025  # accepted distances of the last level, relative to the far field
-
 MOST_GROWTH = 1.5  # largest growth ratio that is tried; with larger ones levels do not get away from the wall
-
-SPARE_WAY = 1.6
-"""If the number of rows is free, the ratio of the distance that they could reach to the distance."""
-
+SPARE_WAY = 1.6  # if the number of rows is free, ratio of the distance that they could reach to the distance
 EVENINGS = 6  # most marches in which steps are corrected so that growth is even
 WITHIN = 0.998  # fraction of the growth beyond 1 that these aim at
-
+TRIED = 8  # numbers of rows that are tried, at the least, before a limit of growth counts as out of reach
+GAIN = 0.25  # least part of the excess over this limit that twice the rows take away, fewer in proportion
 AT_CORNERS = 12  # most marches from a front with concave corners, whose first steps are corrected
 ALIKE = 1e-6  # relative error of first cells from which these corrections go on
 EQUAL = 1e-9  # relative difference of steps that are equal
-
 AREA_SMOOTHING = 0.16  # coefficient of a smoothing step of the areas along a level
 
 
@@ -108,12 +104,14 @@ def marched(front: Front, rows: int, layers: MarchLayers) -> Floats:
     if layers.free:
         cells = -(-cells // multiple) * multiple
     nodes = _unfolded(front, cells, layers)
-    while growth and float(fastest(nodes).max()) > math.log(growth):
+    excess: list[float] = []
+    while growth and (excess := [*excess, float(fastest(nodes).max()) - math.log(growth)])[-1] > 0.0:
         cells += -(-(1 + (cells - least) // 8) // multiple) * multiple
-        if cells > 2 * least + 8:
+        beyond = min(excess) > (1.0 - GAIN * (cells / least - 1.0)) * excess[0]
+        if cells > 2 * least + 8 or (beyond and len(excess) > TRIED):
             problem = f"no number of rows keeps to a growth of {growth:g}"
-            base = ", use a smaller {first_cell}, or close the base with {te} wedge" if front.narrow else ""
-            raise InputError(problem, f"allow more{base}", parameter="growth")
+            base = ", or close the base with {te} wedge" if front.narrow else ""
+            raise InputError(problem, f"allow more, use a smaller {{first_cell}}{base}", parameter="growth")
         nodes = _unfolded(front, cells, layers)
     if cells > rows and not layers.free:
         raise _too_few(rows, cells, growth or MOST_GROWTH, multiple)
@@ -238,6 +236,9 @@ def _marched(
             break
         if not near:
             distance *= (0.75 * NEAREST + 0.25 * FARTHEST) * front.outer / reached
+            equal = cells if shares is None else np.count_nonzero(np.cumsum(shares) == 0.0)
+            if distance <= equal * first:  # of a march that ran away
+                return None, steps
     nodes = front.nodes(levels)
     front.close(nodes)
     _snap(nodes, front.heights(first), steps)

@@ -211,7 +211,8 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
     with stage("guard", seconds):
         if count_folded(solution.grid.nodes) and request.repairs():
             solution, more = _repaired(solution, boundary, request)
-            notes += more
+            kept = (note for note in notes if not (more and note.startswith("the first-cell height is")))
+            notes = (*kept, *more)
     grid = replace(solution.grid, origin=boundary.origin)
     solution = replace(solution, grid=grid, notes=notes, growth=request.growth or math.inf)
     return judged(solution, seconds, request, remedy=_NOT_REPAIRED, history=rows)

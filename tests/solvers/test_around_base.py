@@ -152,6 +152,14 @@ def test_first_cells_twice_as_high_as_a_base_have_a_remedy() -> None:
     remedies = r"no number of rows .* smaller first_cell, or close .* te wedge"
     with pytest.raises(InputError, match=remedies):
         made(Airfoil(meshonet.read("naca:4412").curve.points[1:], "4412"), first=0.01, te="exact")
+    with pytest.raises(InputError, match=r"no number of rows .* use a smaller first_cell"):
+        meshonet.grid("naca:2424", topology="c", base=0.05, first_cell=0.1, growth=1.2)
+
+
+@pytest.mark.parametrize(("nodes", "problem"), [(3, "two wakes"), (4, "grow by more than 10")])
+def test_too_few_nodes_on_a_base_are_refused_with_enough(nodes: int, problem: str) -> None:
+    with pytest.raises(InputError, match=rf"{problem}.*; use 19 or more"):
+        meshonet.grid("naca:0012", topology="c", base_nodes=nodes, first_cell=1e-4)
 
 
 @pytest.mark.parametrize(("ni", "most"), [(81, 0.18), (121, 0.13)])

@@ -73,12 +73,14 @@ def test_first_cells_that_the_guard_changes_are_noted(monkeypatch: pytest.Monkey
         made = interpolate(boundary)
         nodes = made.grid.nodes.copy(order="K")
         nodes[10, 1], nodes[10, 2] = nodes[10, 2].copy(), nodes[10, 1].copy()
-        return Solution(boundary.grid(nodes), "fake", first_cells={"south": 1e-3})
+        exact = ("the first-cell height is 0.001 at every wall node",)
+        return Solution(boundary.grid(nodes), "fake", notes=exact, first_cells={"south": 1e-3})
 
     monkeypatch.setattr(METHOD_OF, lambda _: Each("fake", fold))
     result = make_grid(arch(21, 11), GridRequest())
     assert result.solution.path == ("repair",)
     assert any("the guard changed first cells" in note for note in result.notes)
+    assert not any("at every wall node" in note for note in result.notes)
 
 
 @pytest.mark.parametrize("failure", [MemoryError, SolverError])

@@ -44,10 +44,8 @@ _MOST_TURNED = math.radians(40.0)
 degrees: largest angles are at most 134 degrees, with 30 degrees 144, with 50 degrees 143."""
 _LOST = 0.35  # largest change of the distance between both lines, over the width of the base
 COARSEST = 1.0 / 12.0  # largest cell on a base, over its width
-_SHARE, _SHARE_OF_FEW = (
-    0.3,
-    0.2,
-)  # largest part of the nodes that each wake line has, the second where few are
+_SHARE = 0.3  # largest part of the nodes that each wake line has
+_SHARE_OF_FEW = 0.2  # the same where nodes are few
 _STEEP = 1.5  # growth along a wall of few nodes
 LEAST_BASE = 4  # fewest cells on a base
 _LEAST_WALL = 24  # fewest cells on a wall
@@ -155,10 +153,13 @@ def _base(
         problem = f"a base of {nodes} nodes has {cells} cells, and {{refine}} needs a multiple of {every[-1]}"
         raise InputError(problem, f"use {nodes_beside(cells, every[-1])}", parameter="base_nodes")
     if nodes is not None:
-        end = min(first, width / cells)
+        least, end = _whole(fewest, every[-1:]) + 1, min(first, width / cells)
+        if cells < 3:
+            problem = f"{nodes} nodes on a base, from which a C grid has two wakes"
+            raise InputError(problem, f"use {least} or more", parameter="base_nodes")
         needed = layer_steps(np.empty(cells), width, end, end, 1)
-        problem = f"{nodes} nodes on the base, {width:.3g} wide, grow by {needed:.3g} from first cells of"
-        least = _whole(fewest, every[-1:]) + 1
+        more = f"{needed:.3g}" if math.isfinite(needed) else f"more than {LARGEST:g}"
+        problem = f"{nodes} nodes on the base, {width:.3g} wide, grow by {more} from first cells of"
         if needed > (growth or LARGEST):
             more = f"use {least} or more"
             if growth is not None and needed <= LARGEST:
