@@ -32,7 +32,7 @@ _LIKE_DESIGNATION = re.compile(r"([a-z]+)[\s:_-]*(\d[\w.-]*)", re.IGNORECASE)
 
 
 def format_named(name: str) -> Format:
-    """Return the format with a name, options included (``gmsh:4.1``), or extension; InputError if unknown."""
+    """Return the format with a name or extension, such as ``gmsh:4.1`` or ``.vts``; InputError if unknown."""
     word, _, options = name.lower().lstrip(".").partition(":")
     if word in _OLD_NAMES:
         base, _, own = _OLD_NAMES[word].partition(":")

@@ -29,7 +29,7 @@ class Places:
 
     @classmethod
     def inside(cls, count: int) -> Places:
-        """Return the places of `count` interior nodes."""
+        """Return places for `count` interior nodes: no loop, arc length 0, no corner, no partner."""
         none = np.full(count, -1, dtype=np.intp)
         return cls(none, np.zeros(count), np.zeros(count, dtype=np.intp), none.copy())
 

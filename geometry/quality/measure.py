@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 def count_folded(nodes: Floats) -> int:
     """Return the number of folded cells of `nodes` (ni, nj, 2), (ni, nj, nk, 3) or (ni, nj, 3).
 
-    `nodes` in planar layout (`meshonet.geometry.arrays`) are not copied.
+    Nodes whose x and y are contiguous arrays (see `meshonet.geometry.arrays`) are not copied.
     """
     form = form_of(nodes)
     if form == "volume":

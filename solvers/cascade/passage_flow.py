@@ -74,7 +74,7 @@ class PassageFlow:
         return cls(half, np.unwrap(angle), along + edge, points - phi)
 
     def to_places(self, places: Complexes) -> Complexes:
-        """Return ζ (n,) at the points between the slits whose potentials are G = `places` (n,)."""
+        """Return the points ζ (n,) with the complex potentials G = `places` (n,), between the blades."""
         ratio = sinh(places + self.half) / sinh(places - self.half)
         return places + self.inside(np.asarray(0.5 * log(ratio)))
 

@@ -42,7 +42,7 @@ class StripGrid:
         self._panels = panels(eta, height, spread, 1, nj - outer)
 
     def at(self, rows: Sequence[int], j: int) -> Complexes:
-        """Return w, before any shift, at nodes with indices `rows` on a level `j` near the wall."""
+        """Return w = psi + i phi (see `strip`) at nodes with indices `rows` on a level `j` near the wall."""
         theta = self.theta[list(rows)]
         low = product(self._c, interpolation(self.eta[j : j + 1].tobytes())[:, 0])
         k, high = self._near.at(float(self.eta[j]))

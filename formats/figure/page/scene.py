@@ -58,8 +58,8 @@ class SceneSheet:
     """A drawn layer of cells of a lattice (a block, or a part of a block of a large volume).
 
     `axis` is the direction normal to the layer (None: the lattice is a layer). `node` is the layer's index
-    along `axis`. `ranges` are first and last node along each other direction. If the lattice is a part of a
-    block, `at` is the layer's index in the block along `across` (i, j or k).
+    along `axis`. `ranges` are first and last node along each other direction. `across` (i, j or k) and `at`
+    repeat direction and index as counted in the whole block, if the lattice is a part of one.
     """
 
     lattice: int

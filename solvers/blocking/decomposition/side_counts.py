@@ -137,7 +137,7 @@ def nearer(chords: Chords, counts: Indices, multiple: int = 1) -> Indices:
 
 
 def check_sides(layout: Layout) -> None:
-    """Raise SolverError unless periodic sides can have equal cell counts and the right valence at ends."""
+    """Raise SolverError unless the nodes of periodic sides can match their partners one to one."""
     mesh = layout.mesh
     if not mesh.domain.periodic:
         return

@@ -15,10 +15,10 @@ GATE = 0.3  # factor of b tanh(a)
 class StripNetwork:
     """A Fourier neural operator along theta, the periodic coordinate of strips, with given `weights`.
 
-    ::
+    W, E and P are pointwise linear maps, K and K' spectral convolutions; [a, b] halves a result::
 
-        h <- a * b + gelu(a)                                  lifting, [a, b] = W channels
-        h <- h + E gelu(a + K h) + 0.3 b tanh(a)              three times, [a, b] = conv5(h), K spectral
+        h <- a * b + gelu(a)                                  lifting, [a, b] = W (input)
+        h <- h + E gelu(a + K h) + 0.3 b tanh(a)              three times, [a, b] = conv5(h)
         out = P h + K' h
 
     `weights` has arrays of `xp`, numpy or torch, by name (see `shapes`). Li et al., Fourier Neural Operator
