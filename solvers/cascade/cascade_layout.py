@@ -73,7 +73,7 @@ def cascade_layout(
         whole = extended(fine, cut_of(fine), passage, cascade.blade, rows)
         whole = evened(whole, cascade.layers)
     if smallest_jacobian(whole.mesh.nodes, whole.mesh.quads) <= 0.0:
-        raise NoValidGridError("cells of the passage are folded")
+        raise NoValidGridError("cells of the passage are folded; use more {cells}")
     return turned_round(whole) if cascade.opposite else whole
 
 

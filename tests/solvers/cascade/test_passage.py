@@ -7,7 +7,7 @@ import pytest
 
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.loop import Loop
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.layout.lattice import smallest_jacobians
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.quality.blocks import block_figures
@@ -204,3 +204,9 @@ def test_cells_that_splines_fold_are_unfolded(monkeypatch):
     monkeypatch.setattr(unfolded, "multiplied", crossed)
     mesh = cascade_layout(Cascade(blade(30.0), (0.0, 1.0)), cells=1000).mesh
     assert smallest_jacobians(mesh.nodes, mesh.quads).min() > 0
+
+
+def test_cells_that_stay_folded_are_refused_with_what_helps(monkeypatch):
+    monkeypatch.setattr("meshonet.solvers.cascade.cascade_layout.smallest_jacobian", lambda *_: 0.0)
+    with pytest.raises(NoValidGridError, match="are folded; use more cells"):
+        cascade_layout(Cascade(blade(30.0), (0.0, 1.0)), cells=1000)

@@ -109,6 +109,11 @@ def test_folded_cells_at_a_sharp_bend_are_refused_with_what_helps_there():
     assert worst.count("block=") == 3
 
 
+def test_first_cells_that_no_march_gets_beyond_are_refused_with_what_helps():
+    with pytest.raises(NoValidGridError, match=r"stops after 0 of .*; use a smaller first_cell$"):
+        make_stack(wing(tip="open"), StackRequest(around=49, span=13, first_cell=0.1))
+
+
 def test_sections_that_are_turned_through_each_other_are_refused():
     middle, tip = Section(naca("0024"), 1.0, 2.0), Section(naca("0024"), 1.0, 2.05, cant=60.0)
     with pytest.raises(InputError, match=r"at z=2 and 2\.05 cross, at 60 degrees; turn them less"):
