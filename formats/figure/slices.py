@@ -83,7 +83,7 @@ def layers(grid: Grid, at: Slice, values: list[Floats] | None) -> list[CellSheet
 
 @dataclass(frozen=True, eq=False)
 class Cut:
-    """Polygons (n, 12, 2) in which a plane cuts cells, their last corner repeated; cell values (n,)."""
+    """Polygons in which a plane cuts cells, (n, 12, 2), filled up with the last corner; cell values (n,)."""
 
     polygons: Floats
     values: Floats | None

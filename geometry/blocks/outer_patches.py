@@ -61,9 +61,9 @@ def outer_patches(
 
 
 def rectangles(owners: NDArray[np.intp]) -> Iterator[tuple[int, Range]]:
-    """Yield rectangles of cells with the same owner (index of a patch), as owner and index range of nodes.
+    """Yield rectangles of cells with the same patch: index of the patch, and index range of the nodes.
 
-    They cover all cells that are not `JOINED`. `owners` (n,) or (n, m) is the result of `owners_of`.
+    Cells at a connection (`JOINED`) are left out. `owners` (n,) or (n, m) is the result of `owners_of`.
     """
     cells = owners.reshape(len(owners), -1)
     left = cells != JOINED

@@ -198,7 +198,7 @@ class Channel:
 
     @cached_property
     def levels(self) -> tuple[float, ...]:
-        """Ascending h of the hub, of the ends of the blade at gaps, and of the casing."""
+        """Ascending heights h of hub and casing, and of the ends of the blade at gaps."""
         return tuple(self._levels)
 
 

@@ -109,7 +109,7 @@ class BladeProfile:
         return shortest_ways(arcs - edge, length)
 
     def reshaped(self, plane: Floats, heights: Floats) -> Self:
-        """Return the profile through new points with m', theta = `plane` (n, 2) and h = `heights` (n,)."""
+        """Return the profile through points with m' (see `MeridionalMap`), theta `plane`, and h `heights`."""
         made = copy(self)
         made.__dict__ = {k: v for k, v in vars(self).items() if k not in ("thickness", "_heights")}
         made.heights = heights

@@ -124,7 +124,7 @@ class Sampling:
             raise InputError(problem, "give four point indices")
 
     def corner_steps(self, cells: int) -> tuple[int, ...]:
-        """Return steps, best first, for a wall of `cells`; node indices of corners are multiples of one step.
+        """Return steps k, best first: node indices of corners on a wall of `cells` are multiples of k.
 
         >>> Sampling().corner_steps(404), Sampling().corner_steps(398), Sampling(refined=8).corner_steps(400)
         ((4, 2, 1), (2, 1), (8,))

@@ -21,7 +21,7 @@ def open_sides(quads: Indices, twin: Indices) -> Indices:
 
 
 def paired(quads: Indices, nodes: int) -> tuple[Indices, Indices]:
-    """Return the twin (4 m,) of each half-edge, -1 at open edges, and the surplus half-edges.
+    """Return the opposite half-edge (4 m,) of each half-edge, -1 at open edges; also surplus half-edges.
 
     The third and further half-edges of an edge are surplus. `nodes` is the number of nodes.
     """

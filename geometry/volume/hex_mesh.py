@@ -107,7 +107,7 @@ def second_layer(values: AnyArray, side: Side) -> AnyArray:
 def exchange(
     connections: Sequence[Connection], outside: FaceValues, inside: FaceValues
 ) -> None:  # fmt: skip
-    """Copy values just inside each of two connected sides to the layer just outside the other one.
+    """Copy values from just inside each of two connected sides to the layer just outside the other side.
 
     `inside` and `outside` are functions of block and side that return views of these layers.
     """

@@ -205,7 +205,7 @@ class BodyEnd:
         return begin, np.full(len(side), self.step)
 
     def patches(self, points: Points, side: Floats, last: Floats) -> tuple[Floats, Floats]:
-        """Return two patches (ni, nj, 3): a core at the pole, after rows from it to the `side` (n, 3).
+        """Return two patches (ni, nj, 3): rows from core to `side` (n, 3), and the core at the pole.
 
         `last` (n,) are the lengths in s of the cells at the side. Nodes are s, theta, zeta (`BodyMap`), where
         s is measured from the pole. `points` maps nodes to x, y, z.

@@ -50,7 +50,7 @@ class Hole:
 
     @property
     def plane(self) -> Floats:
-        """(n, 2) s and theta of the nodes around the section, as physical lengths."""
+        """(n, 2) coordinates s and theta of the section's nodes, scaled to physical lengths."""
         return self.section * self.scale
 
     @property

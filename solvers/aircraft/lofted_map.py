@@ -87,7 +87,7 @@ class LoftedMap(BodyMap):
         return (self.points(places + step) - self.points(places - step)) / (2.0 * _STEP)
 
     def normals(self, foot: Floats) -> Floats:
-        """Return unit normals (n, 3) of the body at s, theta, zeta `foot` (n, 3); at poles, mean normals."""
+        """Return unit normals (n, 3) of the body at coordinates `foot` (n, 3); at poles, mean normals."""
         length, normals = self.body.length, self._normals(_off_poles(foot, self.body.length))
         theta = np.linspace(0.0, np.pi, _AROUND)
         for end in (0.0, length):

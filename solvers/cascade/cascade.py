@@ -119,7 +119,7 @@ class Cascade:
 
     @property
     def kept(self) -> float:
-        """Greatest thickness of the layers, divided by `thickness`; below 1 if layers so thick would fold."""
+        """Greatest thickness of the layers, divided by `thickness`; below 1 if thicker layers would fold."""
         return min(float(self.ring.thickness.max()) / self.thickness, 1.0)
 
     @cached_property

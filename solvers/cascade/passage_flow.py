@@ -74,13 +74,13 @@ class PassageFlow:
         return cls(half, np.unwrap(angle), along + edge, points - phi)
 
     def to_places(self, places: Complexes) -> Complexes:
-        """Return the points ζ (n,) with the complex potentials G = `places` (n,), between the blades."""
+        """Return the points ζ (n,) between the blades at which the complex potential G is `places` (n,)."""
         ratio = sinh(places + self.half) / sinh(places - self.half)
         return places + self.inside(np.asarray(0.5 * log(ratio)))
 
     @cached_property
     def far(self) -> tuple[float, float]:
-        """Re (ζ - G) far upstream and far downstream of the blades."""
+        """Real part of ζ - G (see `PassageFlow`) far upstream, and far downstream of the blades."""
         before, behind = self.inside(self.half * np.array([-1.0, 1.0], dtype=np.complex128))
         return float(before.real), float(behind.real)
 

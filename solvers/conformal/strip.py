@@ -111,7 +111,7 @@ def decay(k: Any, T: Any, eta: Any, xp: Any = np) -> tuple[Any, Any]:
 
 
 def harmonic(wall: Any, far: Any, eta: Floats, xp: Any = np) -> Any:
-    """Return modes (..., 2 MODES + 1, len(eta)) of a harmonic function with modes `wall`, `far` at walls."""
+    """Return modes (..., 2 MODES + 1, len(eta)) of a harmonic function with modes `wall`, `far` on walls."""
     count, T = MODES + 1, (far - wall)[..., :1, None].real
     k = wavenumbers(wall, xp)[:count]  # k and -k decay alike
     near, away = decay(k, T, array_like(eta, wall, xp), xp)

@@ -45,7 +45,7 @@ class Turning:
         return self._at_nodes((slope * way).sum(axis=1), len(new))
 
     def angles_transposed(self, new: Floats, pull: Floats) -> Floats:
-        """Return the gradient (n, 2) of Σ pull · angles by the nodes `new` (n, 2); `pull` is (n,)."""
+        """Return the derivative (n, 2) of the sum of `pull` (n,) times `angles` by the nodes `new` (n, 2)."""
         onto = self._slopes(new) * (self.share * pull[self.edges]).sum(axis=1)[:, None]
         gathered = np.zeros_like(new)
         np.add.at(gathered, self.edges[:, 1], onto)

@@ -78,7 +78,7 @@ def tables_of(
 
 
 def cell_lengths(edges: Sequence[Floats]) -> Floats:
-    """Return target lengths (3, ni-1, nj-1, nk-1) of cells: geometric means; `edges` are `BlockTargets`."""
+    """Return target lengths (3, ni-1, nj-1, nk-1) of cells: geometric means over edges (`BlockTargets`)."""
     means = []
     for d, values in enumerate(edges):
         inner = np.moveaxis(values, d, 0)[1:-1]

@@ -72,7 +72,7 @@ class Measures:
 
     @cached_property
     def slopes(self) -> Floats:
-        """(k, m - 1) slopes of the measures between the positions."""
+        """(k, m - 1) slopes of the k measures between successive `arcs`."""
         return np.diff(self.values, axis=1) / np.diff(self.arcs)
 
     @property

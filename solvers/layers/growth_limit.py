@@ -33,7 +33,7 @@ Numbers = TypeVar("Numbers", Floats, Complexes)
 class GrowthLimit:
     """The penalty term w Σ max(0, |ρ| - L)² + μ Σ (ρ - ρ0)² for logarithms ρ (..., k) of growth ratios.
 
-    `limit` is L, which broadcasts with ρ; `wanted` (..., k) is ρ0; `change` is μ.
+    `limit` is L, which broadcasts with ρ; `wanted` (..., k) is ρ0; `change` is μ. Methods get w as `weight`.
     """
 
     limit: float | Floats
@@ -42,7 +42,7 @@ class GrowthLimit:
 
     @classmethod
     def at(cls, growth: Floats, limit: float | Floats, change: float = CHANGE) -> Self:
-        """Return the term with L = `limit` and μ = `change`; ρ0 is the initial ρ, `growth`, clipped to ±L."""
+        """Return the term for initial logarithms `growth` (..., k), which become ρ0, clipped to ±`limit`."""
         return cls(limit, np.clip(growth, -limit, limit), change)
 
     def values(self, growth: Floats, weight: float) -> Floats:

@@ -75,8 +75,8 @@ class Chords:
     def multiple(self) -> Indices:
         """Number (chords,) that divides the cell count of each chord, so that a layout stays symmetric.
 
-        If a chord goes around a ring, it is the number of mirrors. If a mirror contains a corner in the
-        middle of a wall edge of the chord, it is 2. Otherwise it is 1.
+        The number is 1, with two exceptions. If a chord goes around a ring, it is the number of mirrors. If a
+        mirror contains a corner in the middle of a wall edge of the chord, it is 2.
         """
         multiple = np.ones(self.count, dtype=np.intp)
         for k, edge in enumerate(self.edges):

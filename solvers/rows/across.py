@@ -50,11 +50,11 @@ class ChannelLines:
         return PlaceLinks(pairs, factors, scale * aside - (factors * u[pairs]).sum(axis=1))
 
     def leaning(self, u: Floats, pairs: Indices) -> float:
-        """Return the mean square of tan(angle to the normal) of lines between nodes `pairs` at places `u`."""
+        """Return the mean square of the lean (see `links`) of lines that join nodes `pairs` at places `u`."""
         return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
     def weights(self, pairs: Floats) -> Floats:
-        """Return weights (p,) of lines between pairs (p, 2) of places u: the square of `slant` there."""
+        """Return weights (p,) of lines: `slant` squared at the first end; `pairs` (p, 2) are u of both."""
         return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
 
     def aside(self, pairs: Floats) -> Floats:

@@ -176,7 +176,7 @@ class SectionPlane:
         return np.interp(points[:, 0], self._stations, _SHARES)
 
     def stations(self, shares: Floats) -> Floats:
-        """Return m' (see `MeridionalMap`) (n,) at positions in the passage `shares` (n,), -1 to 2."""
+        """Return m' (n,) (see `MeridionalMap`) of points whose shares (see the method `shares`) are given."""
         return np.interp(shares, _SHARES, self._stations)
 
     def camber(self, shares: Floats) -> Floats:

@@ -122,7 +122,7 @@ def _at(points: Floats, place: Floats, wanted: Floats) -> Floats:
 
 
 def with_first_heights(nodes: Floats, first: Indices, heights: Floats) -> Floats:
-    """Return `nodes` (n, 3); second nodes of edges `first` (m, 2) move, so that edges are `heights` long."""
+    """Return `nodes` (n, 3); the second node of each edge `first` (m, 2) moves to get lengths `heights`."""
     foot = nodes[first[:, 0]]
     way = nodes[first[:, 1]] - foot
     moved = nodes.copy()

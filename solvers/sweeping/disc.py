@@ -61,7 +61,7 @@ class Disc:
         return planned([self.section(side)], self.growth or GROWTH, radial=True)
 
     def count(self, side: int) -> int:
-        """Return the number of cells with `side` cells on each quarter."""
+        """Return the number of cells of the disc if each quarter of the circle has `side` cells."""
         return side * side + 4 * side * self.plan(side).rows
 
     @cached_property

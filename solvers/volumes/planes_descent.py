@@ -42,7 +42,7 @@ class PlanesDescent(HexProblem):
 
 
 def inverse_lengths(planes: Floats) -> tuple[float, float, float]:
-    """Return, for each direction of `planes` (3, ni, nj, nk), 1 / mean step along the edges of the volume."""
+    """Return, for each direction, 1 / the mean cell length along the edges of a volume (3, ni, nj, nk)."""
     lengths = []
     for axis in range(3):
         rows = np.moveaxis(planes, axis + 1, -1)

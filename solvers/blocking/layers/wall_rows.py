@@ -71,7 +71,7 @@ class WallRows:
         return float(np.abs(along.growth(complex_of(layout.mesh.nodes))).max())
 
     def wakes(self, layout: Layout) -> dict[int, Floats]:
-        """Return the wakes (k, 2) of the loops that have a row around them, by the index of the loop."""
+        """Return the nodes (k, 2) of each wake with layers, from the sharp edge on, by index of the loop."""
         mesh, lines = layout.mesh, {}
         for row, loop in enumerate(self.loops):
             base = distinct(np.concatenate([table[:, 0] for table in self.columns(layout, row)]))

@@ -45,7 +45,7 @@ class Seen:
 
 @dataclass(frozen=True, eq=False)
 class MarchGraph:
-    """The arrays of ``kernels/surfaces/graph.h``; `order` (n,) has the surface node of each of their rows."""
+    """The arrays of ``kernels/surfaces/graph.h``; `order` (n,) lists the surface's nodes in their order."""
 
     order: Indices
     red: int

@@ -69,9 +69,9 @@ SEEN: Floats = np.stack([_seen(element) for element in ELEMENTS])  # (8, FEATURE
 
 
 def table(size: int) -> Integers:
-    """Return the indices (8, 8, size²) of those weights w that form the convolution kernels K[h, g].
+    """Return the indices (8, 8, size²) with which `convolution` takes the entries of kernels from weights w.
 
-    Channels come in sets of eight, one for each symmetry h of the square: K[h, g](p) = w[h⁻¹ g](h⁻¹ p).
+    There is a kernel for each pair of symmetries h, g of the square: K[h, g](p) = w[h⁻¹ g](h⁻¹ p).
     """
     count = size * size
     return np.asarray(RELATIVE[:, :, None] * count + TAPS[size].reshape(ORDER, 1, count))

@@ -55,7 +55,7 @@ def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any 
 
 
 def even(strips: Any, n: int, xp: Any = np) -> Any:
-    """Return strips with the ends of `strips` (batch, m + 1, n), and `n` nodes at equal steps in between."""
+    """Return strips with `n` equally spaced nodes on each line across `strips` (batch, m + 1, any number)."""
     eta = xp.linspace(0.0, 1.0, n, dtype=strips.real.dtype, device=strips.device)
     return strips[:, :, :1] * (1.0 - eta) + strips[:, :, -1:] * eta
 

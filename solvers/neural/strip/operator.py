@@ -46,11 +46,11 @@ class StripOperator(Operator):
         return cls(name, "o", header, weights, basis, scale, StripNetwork(weights))
 
     def residual(self, wall: Complexes, far: Complexes, hand: NDArray[np.intp] | None = None) -> Complexes:
-        """Return modes (batch, 2 MODES + 1, LEVELS) of Winslow's solution minus the harmonic extension.
+        """Return modes (batch, 2 MODES + 1, LEVELS): Winslow's solution minus the harmonic extension.
 
-        `wall` and `far` (batch, 2 MODES + 1) are Fourier modes of the strip's two walls. `hand` (batch,) are
-        results of `meshonet.geometry.polygon.mirror.handedness`; mirrored bodies then get mirrored grids.
-        Where it is 0, the output is symmetric. Modes that Picard steps cannot correct are 0.
+        `wall` and `far` (batch, 2 MODES + 1) are Fourier modes of the strip's two walls. With `hand`
+        (batch,), results of `meshonet.geometry.polygon.mirror.handedness`, mirrored bodies get mirrored
+        grids. Where `hand` is 0, the output is symmetric. Modes that Picard steps cannot correct are 0.
         """
         if self.network is None:
             return np.zeros((*wall.shape, LEVELS), complex)

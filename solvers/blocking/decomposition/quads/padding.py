@@ -22,7 +22,7 @@ Span = tuple[int, float, float]
 
 
 def wrong_count(mesh: QuadMesh) -> Bools:
-    """Return a mask (n,) of wall nodes with more or fewer quads than 2 or, at a corner, `places.cells`."""
+    """Return a mask (n,) of wall nodes whose number of quads is not 2 or, at a corner, not `places.cells`."""
     cells = mesh.places.cells
     return np.asarray(mesh.wall_nodes & (mesh.valence != np.where(cells > 0, cells, 2)))
 

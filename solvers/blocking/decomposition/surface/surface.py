@@ -40,7 +40,7 @@ class Triangulation:
 
     @property
     def arrays(self) -> tuple[Indices, Indices, Indices]:
-        """Triangles, neighbours and edges in the neighbours, as the compiled functions take them."""
+        """The arrays `triangles`, `neighbours` and `neighbour_edge`, for compiled functions."""
         return self.triangles, self.neighbours, self.neighbour_edge
 
     @cached_property
@@ -106,7 +106,7 @@ class Triangulation:
         return self.size - inner - len(self.walls[0]) + len(self.triangles)
 
     def gather(self, corners: Floats) -> Floats:
-        """Return, for each vertex, the sum (n,) of the values `corners` (t, 3) at the corners there."""
+        """Return for each vertex the sum (n,) of values `corners` (t, 3), given at corners of triangles."""
         return np.asarray(np.bincount(self.triangles.ravel(), corners.ravel(), self.size))
 
     def edge_size(self, vertices: Indices) -> Floats:
