@@ -48,12 +48,12 @@ class Pair(NamedTuple):
 
 
 class SidePart(NamedTuple):
-    """A part of a side; for each direction: node range, index in the file, and -1 if the file reverses it."""
+    """A part of a side of a block in a file."""
 
     side: Side
-    range: Range
-    axes: tuple[int, ...]
-    ways: tuple[int, ...]
+    range: Range  # first and last node along each direction
+    axes: tuple[int, ...]  # for each direction, the number of the file's index along it
+    ways: tuple[int, ...]  # for each direction, -1 if the file reverses it, else 1
 
 
 def part_of(window: FaceWindow, lattices: Sequence[IndexedNodes]) -> SidePart | None:

@@ -41,7 +41,7 @@ def conformal_knots(
     ----------
     marks : (m,) ascending arc lengths in (0, length) at which there must be nodes.
     at : (m,) indices of the nodes at `marks`; if None, they are multiples of one of the `steps`.
-    steps : in descending order; the first one is used that is at most the number of cells before a mark.
+    steps : in descending order; the first that fits before the first and after the last mark is used.
 
     Raises InputError: the conformal angle does not increase along the curve; no convergence.
     """

@@ -33,7 +33,7 @@ def monotone_cubic(x: Floats, values: Floats, at: Floats, *, linear: bool = Fals
 
 
 def piece_at(x: Floats, at: Floats, dimension: int) -> tuple[Indices, Floats, Floats]:
-    """Return in which interval of `x` (n,) each of `at` (m,) is, at what fraction, and the interval's length.
+    """Return, for each of `at` (m,), its interval of `x` (n,), the fraction of this interval, and its length.
 
     Fraction and length have the shape (m, 1, ...), with `dimension` axes.
     """

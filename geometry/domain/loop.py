@@ -114,9 +114,9 @@ class Loop:
         return self.names[stretch]
 
     def steps(self, arcs: Floats, ways: Floats | float) -> Floats:
-        """Return the signed arc lengths (n - 1,) between nodes at `arcs` (n,), in order along the loop.
+        """Return the signed arc lengths (n - 1,) from node to node, for nodes at `arcs` (n,) on the loop.
 
-        `ways` is 1 for nodes in the loop's direction, else -1. So a step may be longer than half the loop.
+        `ways` is 1 if nodes follow the loop's direction, else -1; a step may thus exceed half the loop.
         """
         step = shortest_ways(np.diff(arcs), self.length)
         return np.where(step * ways < -EQUAL * self.length, step + ways * self.length, step)

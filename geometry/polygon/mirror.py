@@ -24,13 +24,12 @@ def farthest(wall: Complexes) -> tuple[int, int]:
 
 
 def handedness(wall: Complexes, far: Complexes) -> tuple[int, Axis]:
-    """Return a sign that tells a body from its mirror image, and the axis of the mirror.
+    """Return a sign (1 or -1) that tells a body from its mirror image, and the axis of the mirror.
 
-    The body is given by two curves, `wall` (n,) and `far` (n,). The mirror images of both, in reversed order,
-    have the opposite sign, 1 or -1. The sign is 0 if both curves are symmetric. The axis (a point and the
-    square of its direction) runs from the first node of `wall` to the middle between the nodes farthest from
-    it. Node k and node n - k are partners. The sign is taken from the largest offset, along or across the
-    axis, of a node from the mirror image of its partner: on `wall` or, if `wall` is symmetric, on `far`.
+    The body is given by two curves, `wall` (n,) and `far` (n,). The sign is 0 if both are symmetric. The axis
+    is a point and the square of a direction. It runs from the first node of `wall` to the middle between the
+    nodes farthest from this node. The sign is taken from the node that deviates most from the mirror image of
+    its partner (node k and node n - k are partners): a node of `wall` or, if `wall` is symmetric, of `far`.
     """
     a, b = farthest(wall)
     along = 0.5 * (wall[a] + wall[b]) - wall[0]

@@ -157,9 +157,9 @@ class BladeSurface:
         return self.crossings(self.lines(u.ravel()), h, len(h) if u.ndim == 1 else 1)
 
     def crossings(self, lines: CubicTable, h: Floats, levels: int = 1) -> Floats:
-        """Return s and theta (..., 2) at which splines `lines` along the span reach the heights `h` (...).
+        """Return s and theta (..., 2) of points at the heights `h` (...) on splines `lines` along the span.
 
-        `h` has the heights of all lines on the first level, then on the second level, up to `levels`.
+        `h` has one height for each spline on the first level, then on the second level, up to `levels`.
         """
         out = np.empty((*h.shape, 2))
         spline_crossings(

@@ -95,7 +95,7 @@ class Section:
 
 
 class Fade(NamedTuple):
-    """Weights (n,) of nodes: 1 for twist and chord of the section, 0 for no twist and the given `chord`."""
+    """Weight (n,) of each node: with 1 it has twist and chord of the section, with 0 no twist and `chord`."""
 
     weight: Floats
     chord: float

@@ -40,12 +40,9 @@ def arcs_by_curvature(
     """Return arc lengths (cells + 1,) from one end of the trailing edge around the nose to the other.
 
     The cell size h is a smooth minimum, 1/h⁴ = Σ 1/hₖ⁴, of four sizes. Two start at the trailing and the
-    leading edge and increase by `GROWTH` times the distance. One is `TURN` / curvature, with a slope of at
-    most `GROWTH`. The last is a constant, with which the integral of ds/h is the number of cells. If cells
-    are too few, growth first rises up to `HURRY` times if `hurried` (C grids). Next, sizes by curvature and
-    at the leading edge are multiplied by a factor. When it exceeds `_SCARCE`, growth rises too. Last, all
-    sizes are scaled. With `based`, sizes are also limited to `_LONGEST` mean cells, and growth from the
-    trailing edge rises first, up to `RUSH` times, unless `at_edge` is given.
+    leading edge and increase by `GROWTH` times the distance. One is the length on which the curve turns by
+    `TURN`. The last is a constant that gives the requested number of cells. If cells are too few, growth
+    rises first (see `hurried` and `based`), then sizes by curvature and at the leading edge, last all sizes.
 
     Parameters
     ----------

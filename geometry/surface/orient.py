@@ -15,11 +15,11 @@ _HOLE = 0.1  # largest extent of open edges that are the rim of a hole, divided 
 def turned_alike(
     patch: Indices, half_edges: tuple[Indices, Indices], twin: Indices, count: int
 ) -> tuple[list[int], list[int], tuple[int, int] | None]:
-    """Return the component and the sign (1 or -1) of each of `count` patches, and a pair of patches or None.
+    """Return which patches to reverse so that each connected part of a surface has one orientation.
 
-    `patch` (4 m,) is the patch of each half-edge. `half_edges` are the first and the last node of each. If
-    the patches with sign -1 are reversed, each component has a consistent orientation. A pair of patches
-    means that this is impossible: the surface is not orientable.
+    The result is the part (a number) and the sign of each of `count` patches: -1 to be reversed, else 1. If
+    this is impossible, as on a Möbius strip, a pair of patches follows, else None. `patch` (4 m,) is the
+    patch of each half-edge. `half_edges` are the first and the last node of each half-edge.
     """
     first, _ = half_edges
     edges = np.flatnonzero(twin > np.arange(len(twin)))

@@ -53,7 +53,7 @@ def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
 
 
 def edges_in(nodes: Floats, sides: Indices, plane: Plane, slack: float) -> Indices:
-    """Return which of `sides` (k, 4) have nodes 0 and 1 within `slack` of a plane, but not nodes 2 and 3."""
+    """Return a mask of the `sides` (k, 4) with the open edge in a plane, up to `slack`, but not the quad."""
     near = np.abs(nodes[sides, plane.axis] - plane.value) <= slack
     return np.asarray(near[:, :2].all(axis=1) & ~near[:, 2:].all(axis=1))
 

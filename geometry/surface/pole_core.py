@@ -26,13 +26,13 @@ _FEWEST = 3  # fewest rows between a core and the column `at`, and fewest column
 
 @dataclass(frozen=True)
 class PoleCore:
-    """A core and rows of cells that replace the cells around a pole (a side of a patch that is a point).
+    """A block (core) and rows of cells around it, which replace the cells around a pole of a patch.
 
     Parameters
     ----------
-    nodes : (b + 1, a + 1, 3) nodes of the core, oriented as the fan, the patch (m + 1, n, 3) at the pole.
-    rows : (r, m + 1, 3) new lines of nodes around the pole, from the edge of the core outwards.
-    at : index of the first line around the pole of the fan that is kept, the last of `rows`.
+    nodes : (b + 1, a + 1, 3) nodes of the core, oriented as the patch.
+    rows : (r, m + 1, 3) lines of nodes around the pole, from the edge of the core outwards.
+    at : index of the first line around the pole that the patch keeps; it is the last of `rows`.
     """
 
     nodes: Floats

@@ -20,7 +20,7 @@ _OBLIQUE = 0.4  # largest cosine between the level and the mean direction of lin
 
 
 def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: float) -> Floats:
-    """Return `points` (k, p, 3) on k levels, moved so that p lines leave the body (level 0) along normals.
+    """Return `points` (k, p, 3) of p lines on k levels, moved so that lines leave the body along normals.
 
     Parameters
     ----------

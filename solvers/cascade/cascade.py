@@ -137,7 +137,7 @@ class Cascade:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Functions along the layers' outer edge whose steps should grow slowly, by the index of the loop."""
+        """By loop index, functions along the layers' outer edge that limit growth of cells (`Measures`)."""
         return {BLADE: self.ring.along} if self.layers.limit else {}
 
     def factors_at(self, arcs: Floats) -> Floats:

@@ -158,7 +158,7 @@ def row_steps(first: float, length: float, largest: float) -> Floats:
 def counts_of(
     cascade: Cascade, chords: Chords, cells: int | None, cell_size: float | None
 ) -> tuple[Indices, int, SizeMetric]:
-    """Return coarse cell counts of chords, the factor from them to final counts, and target cell sizes."""
+    """Return the coarse cell count of each chord, the factor to final counts, and target cell sizes."""
     sizes = cascade.metric
     wanted = WantedCounts(chords, sizes)
     if cell_size is not None:
@@ -184,10 +184,10 @@ def attached_cells(
     cascade: Cascade, chords: Chords, counts: Indices, metric: SizeMetric, layers: int | None = None,
     longest: Mapping[int, float] | None = None,
 ) -> int:  # fmt: skip
-    """Return the number of cells in the layers and in the rows to inlet and outlet.
+    """Return the number of cells in the layers and in the rows of cells to inlet and outlet.
 
-    `counts` are the cells of the chords. `layers` replaces the number of layers. The rows are at
-    least as long as the lengths `longest`, whose keys are the loop indices of inlet and outlet.
+    `counts` are the numbers of cells along the edges of each chord. `layers` replaces the number of layers.
+    `longest` has the least lengths of the rows, by the index of the loop: inlet or outlet.
     """
     along = chords.along_loops(counts).tolist()
     total = along[BLADE] * (cascade.rows_of_layers if layers is None else layers)

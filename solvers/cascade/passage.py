@@ -92,19 +92,19 @@ class Passage:
         return centre + np.array(axial)[:, None] * self.axis + np.array(along)[:, None] * self.pitch
 
     def zeta(self, points: Floats) -> Complexes:
-        """Return complex coordinates ζ (n,) of points (n, 2): the pitch is iπ, the axial direction real."""
+        """Return points (n, 2) as complex numbers ζ (n,); the real axis is axial, the pitch becomes iπ."""
         return np.asarray(times(1j * np.pi, (complex_of(points) - self.centre)) / self.period)
 
     def of_zeta(self, zeta: Complexes) -> Floats:
-        """Return the points (n, 2) with the complex coordinates ζ (n,) of `zeta`."""
+        """Return the points (n, 2) with complex coordinates `zeta` (n,); the inverse of the method `zeta`."""
         return pairs_of(self.centre + times(zeta, self.period) / (1j * np.pi))
 
     def domain(self, inlet: float, outlet: float) -> Domain:
-        """Return the domain of the blocks, with loops along the front, inlet and outlet, and one around them.
+        """Return the domain of the blocks between the blade, the inlet and the outlet.
 
-        The inlet is the first side of a rectangle upstream of the passage; it runs against the pitch and
-        starts at `inlet`. The outlet is the first side of a rectangle downstream; it runs along the pitch and
-        ends at `outlet`. Both are distances from the centre along the pitch, in pitches.
+        Its loops are the blade (or its layers), one rectangle upstream, one downstream, and one around all.
+        The blocks end at a side of the rectangles. This side of the upstream rectangle starts at `inlet`, and
+        of the downstream rectangle ends at `outlet`: distances from the centre along the pitch, in pitches.
         """
         pitch = abs(self.period)
         x, far = (self.inlet, self.outlet), (self.inlet - pitch, self.outlet + pitch)

@@ -50,7 +50,7 @@ class PassageFlow:
 
     @classmethod
     def of(cls, points: Complexes) -> Self:
-        """Return the flow past a row of equal clockwise polygons (n,) in the plane of ζ, iπ apart."""
+        """Return the flow past a cascade of clockwise polygons with points ζ = `points` (`Passage.zeta`)."""
         sheet = _sheet(points)
         gain = 2.0 * np.pi * sheet * modulus(np.roll(points, -1) - points)
         parts = int(np.ceil(np.abs(gain).max() / _LONGEST))

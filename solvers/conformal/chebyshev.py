@@ -45,10 +45,10 @@ def barycentric(nodes: Floats, weights: Floats, x: Floats) -> Floats:
 
 
 class Panels(NamedTuple):
-    """Consecutive intervals of eta: panel k covers the grid levels from ``ends[k]`` to ``ends[k + 1]``.
+    """Consecutive intervals of eta (panels): panel k covers the grid levels ``ends[k]`` to ``ends[k + 1]``.
 
-    `eta` (panels * NODES,) are the points of the panels. The value at a level is the product of values at the
-    points of its panel and its column of `matrix` (NODES, levels). Without panels, `ends` has one entry.
+    `eta` (panels * NODES,) are interpolation points in the panels. `matrix` (NODES, levels) has a column for
+    each level: the weights of the points of its panel. Without panels, `ends` has one entry.
     """
 
     ends: list[int]

@@ -24,10 +24,10 @@ Shift: TypeAlias = tuple[Floats, Callable[[Floats], Floats]]
 
 
 class StripGrid:
-    """A solution in the strip (the conformal image of the domain), to be evaluated at the nodes of a grid.
+    """A grid in the strip (the conformal image of the domain), to be evaluated at its nodes.
 
-    `c` (2 MODES + 1, LEVELS) are the Fourier modes of F = w - i theta at the Chebyshev points. `wall` and
-    `far` (n,) are F at the nodes of wall and far field. `eta` (nj,) ascends from 0 to 1.
+    For points w, `c` (2 MODES + 1, LEVELS) are the Fourier modes of F = w - i theta at Chebyshev points.
+    `wall` and `far` (n,) are F at the nodes of wall and far field. `eta` (nj,) ascends from 0 to 1.
     """
 
     def __init__(self, c: Complexes, wall: Complexes, far: Complexes, eta: Floats) -> None:
@@ -42,7 +42,7 @@ class StripGrid:
         self._panels = panels(eta, height, spread, 1, nj - outer)
 
     def at(self, rows: Sequence[int], j: int) -> Complexes:
-        """Return w = psi + i phi (see `strip`) at nodes with indices `rows` on a level `j` near the wall."""
+        """Return the points w at nodes with indices `rows` along the wall, on a level `j` near the wall."""
         theta = self.theta[list(rows)]
         low = product(self._c, interpolation(self.eta[j : j + 1].tobytes())[:, 0])
         k, high = self._near.at(float(self.eta[j]))

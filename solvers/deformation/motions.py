@@ -25,7 +25,7 @@ class Turning:
 
     @classmethod
     def of(cls, nodes: Floats, edges: Indices) -> Self:
-        """Return the weights of wall `edges` (m, 2), indices of `nodes` (n, 2), in the angles of nodes."""
+        """Return the object for wall `edges` (m, 2), pairs of indices into `nodes` (n, 2)."""
         nearness = 1.0 / np.maximum(norms(nodes[edges[:, 1]] - nodes[edges[:, 0]]), 1e-300)
         total = np.bincount(edges.ravel(), np.repeat(nearness, 2), len(nodes))
         return cls(edges, nearness[:, None] / total[edges])
@@ -65,7 +65,7 @@ def turns_in_plane(angles: Floats) -> Floats:
 
 
 def turns_in_space(quads: Indices, old: Floats, new: Floats) -> Floats:
-    """Return R - 1 (n, 3, 3) for the rotation R of each node of `quads` (m, 4) from `old` to `new` (n, 3)."""
+    """Return R - 1 (n, 3, 3); R rotates the quads around a node from positions `old` to `new` (n, 3)."""
     before, after = _frames(old[quads]), _frames(new[quads])
     whole = product(after, inverse(before))
     total = np.zeros((len(old), 3, 3))
@@ -86,7 +86,7 @@ def _frames(corners: Floats) -> Floats:
 
 
 def affine(places: Floats, moved: Floats, turns: Floats) -> Floats:
-    """Return (d + d², n): a (d numbers) and B (d² numbers) of each node, whose motion of x is a + B x.
+    """Return the motion x -> a + B x of each node, as an array (d + d², n): a vector a, then a matrix B.
 
     `places` and `moved` (n, d) are the old and new positions of the nodes, `turns` (n, d, d) their rotation
     matrices minus the identity.

@@ -127,10 +127,9 @@ def distance_to_march(
 ) -> float:
     """Return the sum of the steps of a march whose last level reaches the far field.
 
-    Around a circle of n nodes, a step s leads from the radius r to r + s (1 - e)/(1 + f s/r + 2 e s/r). Here
-    f is the weight of the flux along a level and e = 2π ε q/n + b h/r the dissipation. ε and b are
-    coefficients of `settings`, h is the height of the level, q a reduction where lines diverge. For other
-    bodies, corrections fitted on airfoils are applied.
+    A level advances by less than its step, because of dissipation and of the flux along the level. On a
+    circle of radius r, a step s increases r by s (1 - e)/(1 + f s/r + 2 e s/r). Here f is the weight of the
+    flux along the level, and e the dissipation. Other bodies get corrections fitted on airfoils.
     """
     distance = front.outer - front.inner
     around = 2.0 * math.pi * settings.dissipation / len(front.start())

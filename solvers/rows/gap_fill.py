@@ -47,10 +47,10 @@ class GapFill:
 
 
 def outline_sides(count: int, lead: int, aside: int) -> list[Indices]:
-    """Return the indices of the nodes of each of four sides, in an outline of `count` nodes.
+    """Return the node indices of each of the four sides into which an outline of `count` nodes is divided.
 
-    Side 1 is around the trailing edge, side 3 around the leading edge, which is node `lead`. Each of them
-    extends from its edge by `aside` nodes in both directions. Sides 0 and 2 are between sides 1 and 3.
+    Side 1 is around the trailing edge, side 3 around the leading edge, which is node `lead`. Both extend by
+    `aside` nodes to either side of the edge. Sides 0 and 2 are between them.
     """
     m, half = aside, count // 2
     cuts = [m, half - m, half + m, count - m, count + m]

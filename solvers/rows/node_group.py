@@ -103,10 +103,10 @@ class NodeGroup:
         own[beside, :, 1] = exact_in_corners(own[beside][:, :, 1], begins, lengths, self.row.channel.in_space)
 
     def store(self, values: Floats, rises: Sequence[Rise], space: Floats) -> None:
-        """Store x, y, z of the group's nodes in `space` (levels, n, 3), which is for all nodes of the row.
+        """Write x, y, z of the group's nodes into the array `space` (levels, n, 3) of all nodes of the row.
 
-        `values` (levels, m, 3) are s, theta, h (see `Channel`) of the group's nodes. `rises` displace the
-        nodes of layers.
+        `values` (levels, m, 3) are the coordinates s, theta, h (see `Channel`) of the nodes. Nodes in layers
+        are displaced by `rises`.
         """
         self.row.channel.store(values, self.ids, space)
         if rises:

@@ -145,7 +145,7 @@ class SectionPlane:
 
     @cached_property
     def across(self) -> tuple[Floats, Floats]:
-        """Fields `lower` and `slant` of `ChannelLines` for this section, whose field `upper` is `ON_SIDE`."""
+        """Fields `lower` and `slant` of the `ChannelLines` of this section alone."""
         front, pitch = self.cascade.ring.front, np.array([0.0, self.cascade.pitch[1]])
         one, other = (front.at(self.front_arcs(u)) for u in (ON_SIDE, 1.0 - ON_SIDE))
         off = ((other + pitch).T[:, None] - one.T[:, :, None]) ** 2

@@ -154,10 +154,10 @@ def upright(
     ends: tuple[Floats, Floats], free: tuple[bool, bool], planes: Sequence[SectionPlane], pairs: Indices,
     fixed: Bools,
 ) -> tuple[Floats, Floats]:  # fmt: skip
-    """Return places (k,) around the blade, at hub and casing, with which lines across the channel lean less.
+    """Return places (k,) of nodes around the blade, at hub and casing, changed so that lines lean less.
 
-    No node moves beyond an edge of the blade. No node moves at all if, in the half of the span at a free end,
-    no line leans by more than `LEAN`.
+    The lines cross the channel to the next blade; lean is their angle to the normal. No node moves beyond an
+    edge of the blade, or if no line in the half of the span at a free end leans by more than `LEAN`.
 
     Parameters
     ----------

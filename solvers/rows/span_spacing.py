@@ -127,7 +127,7 @@ class Spacing:
         return cls(lengths, (two_sided(known, ends, growth, cells) / known[:, None]).T)
 
     def at(self, lengths: Floats) -> Floats:
-        """Return the relative arc lengths (cells + 1, n) on lines of `lengths` (n,)."""
+        """Return the relative arc lengths (cells + 1, n) of the nodes on n lines of these `lengths` (n,)."""
         last = self.table.shape[1] - 1
         if not last:
             return np.repeat(self.table, len(lengths), axis=1)

@@ -81,10 +81,10 @@ class CrossSection:
 def planned(
     sections: Sequence[CrossSection], growth: float = GROWTH, rows: int | None = None, *, radial: bool = False
 ) -> FiveBlocks:
-    """Return one division for all sections: its growth ratio is at most `growth` if possible, else least.
+    """Return one division for all sections, with a growth ratio of at most `growth` or else the smallest.
 
-    `rows` is the number of rows of the ring, by default the smallest sufficient one. `radial`, for circles,
-    aligns the lines of the ring with radii.
+    `rows` is the number of rows of the ring, by default the smallest that keeps to `growth`. `radial`, for
+    circles, aligns the lines of the ring with radii.
     """
     best, least = FiveBlocks(_SIZES[0], rows or 1), np.inf
     for core in _SIZES:

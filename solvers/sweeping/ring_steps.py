@@ -50,9 +50,9 @@ def fewest_rows(lengths: Floats, sizes: Floats, first: float | None, growth: flo
 
 
 def largest_ratio(lengths: Floats, sizes: Floats, steps: Floats) -> float:
-    """Return the largest ratio of neighbouring cell lengths on k lines, infinite if steps do not fill a line.
+    """Return the largest ratio of neighbouring cell lengths on k lines; infinite if cells do not fill a line.
 
-    `steps` (k, rows) are the cells of lines of `lengths` (k,). `sizes` (k,) are the cells beyond the lines.
+    The lines have `lengths` (k,) and cells `steps` (k, rows). `sizes` (k,) are the cells next to the lines.
     """
     if np.abs(steps.sum(axis=1) - lengths).max() > _CLOSE * lengths.max():
         return math.inf

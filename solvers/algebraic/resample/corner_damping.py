@@ -44,7 +44,7 @@ def fading(m: int, n: int) -> Floats:
 
 @lru_cache(maxsize=16)
 def cubic(n: int, count: int) -> Floats:
-    """Return the matrix (count, n) from second derivatives at n knots to spline minus linear interpolant."""
+    """Return the matrix (count, n) that turns second derivatives at knots into spline minus linear values."""
     return _weighted(n, count, 2)
 
 

@@ -126,7 +126,7 @@ def _conflict(names: tuple[str, ...], given: Mapping[str, int], sums: Sums, leas
 
 
 def nearer(chords: Chords, counts: Indices, multiple: int = 1) -> Indices:
-    """Return scaled `counts`: sides with a prescribed count get nearly `multiple` times this count."""
+    """Return `counts`, scaled so that a side with a prescribed count gets about `multiple` times that."""
     counts = counts.copy()
     for name, row in sums_of(chords).items():
         total = sum(times * counts[chord] for chord, times in row.items())
@@ -157,7 +157,7 @@ def _unmatched(sides: Periodic) -> str:
 
 
 def alike_along_sides(chords: Chords, counts: Indices) -> bool:
-    """Return whether both sides of every periodic pair have equally many cells, for `counts` of chords."""
+    """Return whether the sides of each periodic pair have equally many cells; `counts` are cells by chord."""
     return all(
         sum(value * counts[chord] for chord, value in row.items()) == 0.0 for row, _, _ in _alike(chords)
     )

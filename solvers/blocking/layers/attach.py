@@ -31,10 +31,9 @@ class Rows:
 
 
 def attach(layout: Layout, domain: Domain, rows: Sequence[Rows]) -> Layout:
-    """Return the layout extended by `rows`: each block side on a loop of `rows` gets a new block.
+    """Return the layout extended by `rows` of blocks: each block side on a loop with rows gets a new block.
 
-    `domain` is the domain of the result, in which the loops of `rows` run through the ends of the new lines.
-    Its other loops are as in the layout.
+    `domain` is the domain of the result: the loops with rows are replaced by loops at the ends of the rows.
     """
     mesh = layout.mesh
     nodes, places = [mesh.nodes], [replace(mesh.places, loop=mesh.places.loop.copy())]

@@ -47,11 +47,11 @@ class GrowthLines:
     def from_walls(
         cls, layout: Layout, walls: Bools, limit: float, elsewhere: float, sliding: Bools | bool = False
     ) -> Self:
-        """Return all pairs of consecutive edges, with limits (logarithms of ratios) that depend on position.
+        """Return all pairs of consecutive edges on grid lines, each with a limit on the ratio of its lengths.
 
-        The limit is `limit` across block sides, and along grid lines that start at `walls`, a mask (n,) of
-        nodes. It is `elsewhere` for other pairs, and at irregular vertices. In blocks beside a wall, pairs
-        parallel to the wall get the ratio on the wall if it is larger, except for `sliding` wall nodes (n,).
+        Limits are logarithms. `limit` applies across block sides, and on grid lines that start at the nodes
+        in the mask `walls` (n,), `elsewhere` to other pairs and at irregular vertices. In blocks beside a
+        wall, pairs parallel to it may also have the ratio on the wall, unless its nodes are `sliding`.
         """
         mesh, pairs = layout.mesh, cls.of(layout.mesh, elsewhere)
         nodes = pairs.nodes
@@ -88,7 +88,7 @@ class GrowthLines:
         return np.asarray(log(modulus(after) / modulus(before)) + self.offset)
 
     def edges(self, z: Complexes) -> tuple[Complexes, Complexes]:
-        """Return first and second edge of each pair as complex numbers (k,), for nodes at `z` (n,)."""
+        """Return the first and the second edges of all pairs, as complex vectors (k,); nodes are `z` (n,)."""
         return z[self.nodes[:, 1]] - z[self.nodes[:, 0]], z[self.nodes[:, 2]] - z[self.begins]
 
     def largest_at(self, mesh: QuadMesh, rows: list[Indices]) -> Floats:

@@ -15,7 +15,7 @@ _LINES = ("symmetry", "other")
 
 @dataclass(frozen=True)
 class Stretch:
-    """A part of a loop that has layers, and that starts and ends at corners with one cell.
+    """A part of a loop that has layers. At both its ends is a corner at which one cell meets.
 
     Parameters
     ----------

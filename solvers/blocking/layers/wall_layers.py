@@ -162,7 +162,7 @@ class WallLayers:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """For each loop around layers, the functions whose steps from node to node should grow slowly."""
+        """By index of a loop around layers, functions whose steps limit the growth of cells (`Measures`)."""
         measures = {k: ring.along for k, ring in self.rings.items()}
         if self.near is not None:
             ends = np.array([0.0, self.near.circle.length])

@@ -70,9 +70,9 @@ def _share(values: Bools) -> float:
 def excess(z: Tensor, goal: Tensor) -> tuple[Tensor, Tensor, Tensor]:
     """Return three measures (batch,) of how much worse complex grids `z` (batch, m, n) are than `goal`.
 
-    The first two tell by how many radians the mean and the maximum of the cells' greatest angles are larger
-    than for `goal`. They are at least 0. The third is log(1 + s / `SLIGHT`). s sums how far angles are beyond
-    the limits `NARROW` and `WIDE`, or beyond the angle of the same cell of `goal` if that is wider.
+    The first two are in radians and at least 0: the increase of the mean, and of the maximum, of the greatest
+    angles of cells. The third grows with the number of angles beyond the limits `NARROW` and `WIDE`, and with
+    their excess; angles that are not worse than in the same cell of `goal` do not count.
     """
     least, most = extremes(z)
     with torch.no_grad():

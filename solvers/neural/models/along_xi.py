@@ -65,10 +65,7 @@ class AlongXi(Architecture):
 
 @dataclass(frozen=True)
 class WNO(AlongXi):
-    """Wavelet neural operator along xi: h <- gelu(K h + W h + b), where K multiplies wavelet coefficients.
-
-    Tripura & Chakraborty, CMAME 404 (2023) 115783; Daubechies, Ten Lectures on Wavelets (1992), table 6.1.
-    """
+    """Wavelet neural operator along xi: h <- gelu(K h + W h + b), where K acts on wavelet coefficients."""
 
     levels: int = 3  # of the wavelet transform
     layers: int = 4  # wavelet layers

@@ -42,8 +42,8 @@ def unrolled(z: Any, centres: Any, xp: Any = np) -> tuple[Any, Any]:
 def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any = np) -> tuple[Any, Any, Any]:
     """Return the strips of `walls` (batch, m + 1, n), their centres (batch,), and a mask (see `unrolled`).
 
-    The centre is the centroid inside the body's closed curve `wall` (batch, ni), if `walls` wind once around
-    it. Otherwise it is the point that `inside` returns for the curve ``walls[k, :-1, 0]``.
+    The centre is the centroid inside the body's closed curve `wall` (batch, ni). If `walls` do not wind
+    exactly once around it, the centre is instead the result of `inside` for the curve ``walls[k, :-1, 0]``.
     """
     centres = middles(wall[:, :-1], xp)
     strips, once = unrolled(walls, centres, xp)
@@ -61,7 +61,7 @@ def even(strips: Any, n: int, xp: Any = np) -> Any:
 
 
 def factors(strips: Any, xp: Any = np) -> Any:
-    """Return factors (batch,) that scale strips (batch, m + 1, n); half a period then has area 1."""
+    """Return the factors (batch,) that scale strips (batch, m + 1, n) to area 1 per half period."""
     heights = (strips[:, :-1, -1] - strips[:, :-1, 0]).imag.mean(1)
     return 1.0 / xp.sqrt(0.5 * TURN * heights)
 

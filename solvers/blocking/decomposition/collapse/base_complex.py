@@ -43,8 +43,8 @@ class BaseComplex:
     def sides(self) -> tuple[Indices, Indices, Indices]:
         """Edges along the sides of the blocks: south, north, west, east of each block.
 
-        The first array (k,) has, for each node of each side, the edge to the next node; -1 at the last node.
-        The second (4 b,) has each side's first index in the first array, the third (4 b,) each side's chord.
+        The first array (k,) has, side by side, the edge from each node to the next, and -1 at the end of a
+        side. The second (4 b,) has the start of each side in the first array, the third (4 b,) its chord.
         """
         lines = [line for block in self.blocks for line in (block[:, 0], block[:, -1], block[0], block[-1])]
         nodes = np.concatenate(lines)

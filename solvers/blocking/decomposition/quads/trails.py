@@ -14,7 +14,7 @@ Tables = tuple[Floats, Indices, Indices, Indices]
 
 
 def map_tables(seamless: SeamlessMap) -> Tables:
-    """Return the map's coordinates (t, 3, 2), and neighbours, edges in neighbours, turns, each (t, 3)."""
+    """Return the map as arrays for compiled code: coordinates, neighbours, edges of neighbours, and turns."""
     coords = np.ascontiguousarray(seamless.corner_coords).view(np.float64).reshape(-1, 3, 2)
     return coords, seamless.surface.neighbours, seamless.surface.neighbour_edge, seamless.turns
 
@@ -54,7 +54,7 @@ class Trails:
         return trail, float(start + part * (stop - start))
 
     def locate(self, trail: Indices, length: Floats) -> tuple[Indices, Floats]:
-        """Return, for q points at lengths along trails, the piece of each and the position in it, 0 to 1."""
+        """Return on which pieces (q,) q points of trails lie, and their positions (q,) there, 0 to 1."""
         ends = self.length[self.first[1:] + np.arange(len(self.first) - 1)]
         offset = np.append(0.0, np.cumsum(ends))
         owner = np.repeat(np.arange(len(ends)), np.diff(self.first))
