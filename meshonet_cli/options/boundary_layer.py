@@ -39,8 +39,8 @@ YPlusAtWalls = Annotated[str | None, _option(
 Length = Annotated[float | None, _option(
     metavar="L", help="Reference length of --reynolds, in the unit of --first-cell. [default: chord or "
     "largest extent of a body; in a four-sided domain, distance from the first to the farthest node of "
-    "south; in a multi-block grid, largest extent of all holes, or without holes of the domain; 1 for a "
-    "marched volume]",
+    "south; in a multi-block grid, largest extent of all holes together, or of the domain if it has no "
+    "holes; 1 for a marched volume]",
 )]
 Reynolds = Annotated[float | None, _option(
     metavar="RE", help="Reynolds number for --y-plus, based on --length.",
