@@ -21,8 +21,8 @@ MARCH_GROWTH = 1.2
 THINNER = 0.6  # factor on the thickness after every march has folded
 TRIES = 4  # thicknesses, the last a fifth of the first
 BLUNT = "{base} 0.005"  # option that opens the sharp edge of an airfoil
-AT_SHARP_EDGE = f"at the sharp edge of an airfoil give {BLUNT}, or {{te}} round in place of a wedge"
-"""Remedy where layers fold because a wall turns by nearly 180 degrees."""
+AT_SHARP_EDGE = "use thinner first cells; "  # remedy where layers fold: a wall can turn by nearly 180 degrees
+AT_SHARP_EDGE += f"at the sharp edge of an airfoil give {BLUNT}, or {{te}} round in place of a wedge"
 FEWEST_CELLS = 4.0  # smallest thickness of layers in first cells
 
 
@@ -75,7 +75,7 @@ def fitted(
             return levels
         thickness *= THINNER
     raise InputError(
-        "layers fold at the wall however thin",
+        f"layers of {first:.3g} fold at the wall",
         f"{AT_SHARP_EDGE}; elsewhere smooth the wall, or leave its layers out",
         place=place(int(np.argmax(folded))),
     )  # fmt: skip

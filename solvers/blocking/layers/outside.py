@@ -25,7 +25,7 @@ CELLS_IN_GAP = 2.5  # so that at least two quads cross every gap
 CELLS_AROUND, CELLS_ACROSS = 24.0, 30.0
 """Smallest numbers of cells around a loop, and across a domain far from all features."""
 GRADING = 0.2  # growth of sizes along walls, and with the distance from walls, per length
-CLOSE = "use a larger {growth} or a larger first cell, or open the gap there"
+CLOSE = "use a larger {growth}, a first cell half or twice as high, or open the gap there"
 """Remedy for walls, or fronts of layers, that nearly touch."""
 
 

@@ -10,6 +10,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.quality.blocks import block_figures
 from meshonet.solvers.blocking.layers.layered import layered
+from meshonet.solvers.blocking.layers.marched import fitted
 from meshonet.solvers.blocking.layers.outside import found_outside
 from meshonet.solvers.energy.quad_problem import smallest_jacobian
 from meshonet.solvers.layers.layer_settings import LayerSettings
@@ -128,7 +129,8 @@ def test_no_room_for_layers_is_said_with_its_place():
 def test_fronts_that_nearly_touch_are_refused_with_what_helps():
     unit = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     near = Domain.of_polygons([4 * unit, unit + np.array([0.5, 1.5]), unit + np.array([1.5 + 1e-11, 1.5])])
-    with pytest.raises(
-        InputError, match=r"too close .* use a larger \w+ or a larger first cell, or open the gap"
-    ):
+    helps = r"too close .* use a larger \w+, a first cell half or twice as high, or open the gap"
+    with pytest.raises(InputError, match=helps):
         found_outside(near, (1, 2))
+    with pytest.raises(InputError, match=r"there: layers of 0\.1 fold .* use thinner first cells"):
+        fitted(np.eye(3, 2), np.arange(3), 3.0, np.ones(3), 1.0, 0.1, (), place=lambda _: "there")
