@@ -48,7 +48,7 @@ class CadFace:
 
 @dataclass(frozen=True, eq=False)
 class CadModel:
-    """All faces of a CAD file; a `Shape` that cannot be made a boundary of four sides."""
+    """All faces of a CAD file: a `Shape` from which no boundary of four sides can be made."""
 
     vertices: Floats  # (n, 3) positions in the unit of the file
     # edges, faces: in the order of the file

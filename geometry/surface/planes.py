@@ -31,7 +31,7 @@ def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
     """Return the planes normal to an axis that contain open edges and have the surface on one side.
 
     `sides` is the result of `open_sides`. If several planes contain an edge, it counts for the plane
-    with the most edges. A plane has at least `FEWEST` edges; a blunt trailing edge with fewer edges is none.
+    with the most edges. Planes with fewer than `FEWEST` edges, such as blunt trailing edges, are left out.
     """
     if not len(sides):
         return ()

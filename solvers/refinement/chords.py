@@ -160,8 +160,8 @@ class Chords:
     def counts_for_size(self, size: float, least: Indices | None = None) -> Indices:
         """Return counts (chords,) for cells of the given size.
 
-        The count of a chord is the rounded geometric mean of length / size over its edges. It is at least
-        its count in `least` (chords,), by default in the property `least`.
+        The count of a chord is the rounded geometric mean of length / size over its edges. `least` (chords,)
+        are the smallest permitted counts, by default those of the chords.
         """
         wanted = log(np.maximum(self.lengths / size, 1e-9))
         mean = np.bincount(self.chord, wanted, self.count) / np.bincount(self.chord, minlength=self.count)
