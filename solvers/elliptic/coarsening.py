@@ -57,9 +57,9 @@ class Direction:
     def transfer(self) -> tuple[Floats, Floats, Floats, Floats]:
         """Weights of linear interpolation (one array) and of its transpose, the restriction (three arrays).
 
-        The first array (n,) has for each fine node the weight of the next coarse node, 0 at coarse nodes. The
-        three (coarse n,) have for each coarse node the weights of the fine nodes before, at and after it.
-        They are scaled by the lengths of the dual cells, so that a constant residual is preserved.
+        The interpolation has for each fine node (n,) the weight of the next coarse node, 0 at coarse nodes.
+        The restriction has for each coarse node the weights of the fine nodes before, at and after it. These
+        weights are scaled by the lengths of the dual cells, so that a constant residual is preserved.
         """
         before, after = self._steps
         length = (before + after) / 2

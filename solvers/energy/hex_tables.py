@@ -43,7 +43,7 @@ def tables_of(
 ) -> HexTables:
     """Return the tables of a mesh for compiled code; `moves` (n,) is the mask of free nodes.
 
-    `lengths` are the target lengths of cells. If `turned`, the longest direction of each block is the last.
+    `lengths` are target lengths of cells. If `turned`, the longest direction of a block becomes its last.
     """
     parts = [
         _part(wider, np.append(moves, False), wanted, sizes, turned)
