@@ -157,7 +157,7 @@ def size_of(sample: Boundary | Grid) -> str:
 
 
 def size_remedy(own: str, first: str) -> str:
-    """Return how to make a sample of the size `own` as large as `first`; both are texts of `size_of`."""
+    """Return advice for giving a sample of the size `own` the size `first`; both are texts of `size_of`."""
     kinds = {size.partition(" of ")[0].rpartition(" ")[2] for size in (own, first)}
     if "blocks" not in kinds:
         return "set {res} and {topology}"

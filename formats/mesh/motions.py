@@ -40,9 +40,9 @@ def matched(connection: Connection, blocks: Sequence[Block]) -> Connection:
 
 
 def like_others(connection: Connection, motions: list[Motion]) -> Connection:
-    """Return a periodic connection; if one of `motions` nearly equals its motion, it replaces this motion.
+    """Return a periodic connection; its motion is replaced by one of `motions` that nearly equals it.
 
-    Otherwise its motion is added to `motions`. Nearly equal motions thus become bitwise equal.
+    If there is none, its motion is added to `motions`. Nearly equal motions thus become bitwise equal.
     """
     for known in motions:
         for each in (connection, connection.reversed()):

@@ -38,7 +38,7 @@ class Face(NamedTuple):
 class Pair(NamedTuple):
     """Two connected rectangles of nodes, and the name of the connection in the file.
 
-    `partner` has, for each index of the first block, the donor's index that varies along the same lines.
+    `partner` has, for each direction of the first block, the donor's direction along the same lines.
     """
 
     own: FaceWindow

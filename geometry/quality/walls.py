@@ -45,7 +45,7 @@ class WallRow:
 def wall_rows(
     grid: Grid, walls: Sequence[Patch], growth: Mapping[str, Extreme] = NO_GROWTH
 ) -> tuple[WallRow, ...]:
-    """Return the figures of the first cells at `walls`: for each wall, in multi-block grids for each name.
+    """Return the figures of the first cells at each wall; walls of a multi-block grid are joined by name.
 
     `growth` is the growth along the grid lines from each wall, by the name of the wall.
     """

@@ -102,9 +102,9 @@ class Fade(NamedTuple):
 
 
 def placed(unit: Floats, placement: Floats, fade: Fade | None = None) -> Floats:
-    """Return nodes (..., n, 2) of sections from nodes `unit` at unit chord.
+    """Return the nodes (..., n, 2) of placed sections; `unit` are their nodes at unit chord.
 
-    `placement` (..., 6) has the six values of `Section.placement`.
+    `placement` (..., 6) has the values of `Section.placement`; `fade` has weights for chord and twist.
     """
     chord, twist, x, y, about_x, about_y = (placement[..., k, None] for k in range(6))
     if fade is not None:

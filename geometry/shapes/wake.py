@@ -146,7 +146,7 @@ def c_boundary(
 def c_far_field(body: int, wake: int, centre: Floats, radius: float, axis: Floats, outlet: Floats) -> Floats:
     """Return far-field nodes (body + 2 wake + 1, 2) for a wake that ends at `outlet` (2,).
 
-    In front of the body, steps are equal. Raises InputError: the outlet is outside the far field.
+    `body` and `wake` are numbers of cells. Raises InputError: the outlet is outside the far field.
     """
     behind, beside = map(float, along_and_across(outlet - centre, axis))
     if behind <= 0 or abs(beside) >= radius:

@@ -85,9 +85,9 @@ def arcs_by_curvature(
 
 
 def distances_by_curvature(curve: Curve, begin: float, way: float, cells: int) -> Floats:
-    """Return distances (cells + 1,) of nodes from `begin` along a closed curve, by curvature alone.
+    """Return distances (cells + 1,) from `begin` of nodes along a closed curve, spaced by its curvature.
 
-    `way` is the length that gets nodes; it is negative against the direction of the curve.
+    `way` is the length of the part with nodes; it is negative against the direction of the curve.
     """
     s = np.linspace(0.0, abs(way), 2 * _SAMPLES + 1)
     bend = _bend(curve, begin + np.sign(way) * s, curve.length)

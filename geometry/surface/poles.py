@@ -35,10 +35,10 @@ class _FanPatch:
 def without_poles(
     patches: Sequence[Floats], *, replace: bool = True
 ) -> tuple[list[Floats], list[int], tuple[str, ...]]:
-    """Return the patches without poles, the index in `patches` from which each of them comes, and notes.
+    """Return the patches without poles, the index of the original patch for each of them, and notes.
 
-    A pole is a side of a patch (ni, nj, 3) that is a single point. A core patch in place of each pole is
-    appended; its index is the index of a patch that had this pole. Without `replace` nothing is done. Raises
+    A pole is a side of a patch (ni, nj, 3) that is a single point. For each pole, a core patch is
+    appended, with the index of a patch that had this pole. Without `replace` nothing is done. Raises
     InputError: too few cells around a pole, or an odd number.
     """
     out, owners, notes = list(patches), list(range(len(patches))), []

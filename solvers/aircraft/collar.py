@@ -137,7 +137,7 @@ def collar(
 ) -> tuple[Floats, float]:
     """Return nodes (n, rows + 1, 2) between the closed loops `root` and `outer` (n, 2), and a sine.
 
-    This is the sine of the smallest angle between lines across and lines around, before nodes are spaced.
+    It is the sine of the smallest angle between grid lines before nodes are spaced.
 
     Parameters
     ----------

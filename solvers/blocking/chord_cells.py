@@ -27,7 +27,7 @@ class WantedCounts:
         self.first = np.cumsum([0, *(len(edge) - 1 for edge in chords.edges)])[:-1]
 
     def counts(self, metric: SizeMetric, multiple: int = 1) -> Indices:
-        """Return, for each chord, the multiple (chords,) of `multiple` nearest to its target number of cells.
+        """Return the cell counts (chords,) of chords: the multiples of `multiple` nearest to target numbers.
 
         The target number of a chord is the weighted geometric mean of the target numbers of its edges.
         """

@@ -33,11 +33,11 @@ _LEAST = 1e-9  # of the slit: by how much the potential rises from point to poin
 
 @dataclass(frozen=True, eq=False)
 class PassageFlow:
-    """Potential flow past a cascade. It maps the blade to a slit (potential G), and the slit to a strip (σ).
+    """Potential flow past a cascade. Its potential G maps the blade to a slit; a second map makes it a strip.
 
     Parameters
     ----------
-    half : h, half the length of the slit.
+    half : half the length of the slit, h.
     around : (n,) increasing angles ν of points on the blade; the potential is G = h cos ν.
     strip : (n,) positions σ of these points in the strip, infinite at the ends of the slit.
     away : (n,) ζ - G at the points, where ζ is the coordinate of `Passage.zeta`.
@@ -85,10 +85,10 @@ class PassageFlow:
         return float(before.real), float(behind.real)
 
     def inside(self, places: Complexes) -> Complexes:
-        """Return ζ - G (m,) at positions σ = `places` (m,) in the strip, by Cauchy's integral over the blade.
+        """Return ζ - G (m,), coordinate minus potential, at the positions σ = `places` (m,) in the strip.
 
-        The integral is a trapezoidal sum in the variable tanh σ/2, divided by the same sum for the constant 1
-        (Helsing, Ojala, J. Comput. Phys. 227 (2008) 2899-2921).
+        Cauchy's integral over the blade is a trapezoidal sum in the variable tanh σ/2, divided by the same
+        sum for the constant 1 (Helsing, Ojala, J. Comput. Phys. 227 (2008) 2899-2921).
         """
         finite = np.isfinite(self.strip)
         strip, away = self.strip[finite], self.away[finite]

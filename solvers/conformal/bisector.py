@@ -16,10 +16,10 @@ SWEEPS = 3  # over the corners, which influence each other a little
 
 
 def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> tuple[Floats, Floats]:
-    """Return weights (n, corners) of the wall nodes, and shifts (corners,) of phi to be multiplied by them.
+    """Return for each corner the weights (n, corners) of the wall nodes, and a shift (corners,) of phi.
 
-    phi is the coordinate along the wall in the strip. After the shifts, the first line at each corner bisects
-    its angle in the plane. `wall` (n,) are nodes in the plane, counter-clockwise, `corners` indices of them.
+    phi is the coordinate along the wall in the strip. Nodes moved by weight times shift make the first line
+    at each corner bisect its angle in the plane. `wall` (n,) are nodes in the plane, counter-clockwise.
     """
     n, step = len(wall), 2.0 * np.pi / len(wall)
     between = np.subtract.outer(corners, corners) % n

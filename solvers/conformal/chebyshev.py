@@ -60,7 +60,7 @@ def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> 
     """Return panels that cover the levels `first` to `last` - 1 of `eta`; none if they would not save work.
 
     `eta` (nj,) ascends from 0 at the wall to 1. In the coordinate psi across the strip, `height` is the
-    distance from wall to far field, and `spread` the variation along the wall. The map to the plane is
+    distance from wall to far field, and `spread` the variation of psi on the wall. The map to the plane is
     singular only at the wall. On a panel as long as its distance from the wall, `NODES` points therefore have
     an error of (3 + sqrt(8))^-NODES = 6e-13.
     """

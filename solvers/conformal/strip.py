@@ -96,9 +96,9 @@ def wavenumbers(like: Any = None, xp: Any = np) -> Any:
 
 
 def decay(k: Any, T: Any, eta: Any, xp: Any = np) -> tuple[Any, Any]:
-    """Return by which factors (..., len(k), len(eta)) mode k of the wall, and of the far field, decays.
+    """Return the factors (..., len(k), len(eta)) by which the modes k of wall and far field have decayed.
 
-    At eta they are sinh(kT(1-eta))/sinh(kT) and sinh(kT eta)/sinh(kT), computed without overflow. T, the
+    They are sinh(kT(1-eta))/sinh(kT) and sinh(kT eta)/sinh(kT), computed without overflow. T, the
     height of the strip, is a number or has the shape (..., 1, 1).
     """
     k, exp = abs(k)[:, None], functions_of(xp).exp

@@ -129,7 +129,7 @@ def descent_of(
     nodes: Floats, tables: HexTables, inverse_sizes: Floats, cells: int, slides: tuple[Indices, Floats],
     over: tuple[float, float, float] | None = None,
 ) -> HexDescent:  # fmt: skip
-    """Return the compiled minimisation over the `nodes` (n, 3) of a mesh with `cells` cells and `tables`."""
+    """Return the compiled minimisation over the `nodes` (n, 3) of a mesh (see `HexProblem`)."""
     of_places = tables.node, tables.target, tables.inverse, tables.skip, tables.busy
     places = tables.free, tables.start, tables.place, np.ascontiguousarray(inverse_sizes)
     threads = threads_for(len(nodes), MANY_VISITS)

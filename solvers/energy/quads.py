@@ -82,7 +82,7 @@ def minimise(
 ) -> QuadOptimum:  # fmt: skip
     """Return the mesh of `problem` with its nodes at the minimum; other parameters as in `optimise`.
 
-    `steps` has w and β of several functionals, which are minimised one after another.
+    `steps` has the weights w and β of several functionals, which are minimised one after another.
     """
     low, done = problem.smallest(), 0
     if low <= 0.0:

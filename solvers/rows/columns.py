@@ -53,7 +53,7 @@ def resampled(values: Floats, steps: Floats, new: Floats) -> Floats:
 
 
 def arcs_of(steps: Floats) -> Floats:
-    """Return the arc lengths (k, m + 1) at the nodes of lines with `steps` (k, m)."""
+    """Return the arc lengths (k, m + 1) at the nodes of k lines with cells of the lengths `steps` (k, m)."""
     return np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)
 
 

@@ -46,7 +46,7 @@ class NodeGroup:
         return out
 
     def values(self, arcs: Sequence[LineArcs], spacings: Sequence[Spacing]) -> Floats:
-        """Return s, theta, h (levels, m, 3) (see `Channel`); `arcs` and `spacings` have a value per zone."""
+        """Return s, theta, h (levels, m, 3) of the nodes; `arcs` and `spacings` have one entry per zone."""
         values = self.at(self._heights(arcs, spacings))
         self._exact_along_span(values)
         if self.around:
@@ -54,7 +54,7 @@ class NodeGroup:
         return values
 
     def at(self, heights: Floats) -> Floats:
-        """Return s, theta, h (levels, m, 3) (`Channel`) at `heights` (levels, m), with exact first cells."""
+        """Return s, theta, h (levels, m, 3) of the nodes at `heights` (levels, m), with exact first cells."""
         values = np.empty((*heights.shape, 3))
         values[..., :2], values[..., 2] = self.lines.at(heights), heights
         np.clip(values[..., 0], 0.0, 1.0, out=values[..., 0])

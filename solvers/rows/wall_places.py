@@ -26,7 +26,7 @@ def even_wall_places(
     ----------
     corners : (c,) places of nodes that stay.
     pairs : (p, 2) nodes on both sides that are joined by lines across the channel.
-    lines : mean lines of `ChannelLines`, from which lines should not lean more than before.
+    lines : mean lines across the channel; lines between nodes should not lean from them more than before.
     opposite : whether each node at u keeps a node at 1 - u opposite; `lines` then have no effect.
     """
     limit = MARGIN * math.log(growth)

@@ -194,7 +194,7 @@ def _shifted(places: Floats, first: float, cell: float) -> Floats:
 
 
 def least_sine(nodes: Floats) -> float:
-    """Return the smallest sine of an angle of the cells of a patch (n, m, 3), negative if they face -z."""
+    """Return the smallest sine of an angle of cells of a patch (n, m, 3), negative for cells facing -z."""
     least = 1.0
     along, across = np.diff(nodes, axis=0), np.diff(nodes, axis=1)
     for a in (along[:, :-1], along[:, 1:]):

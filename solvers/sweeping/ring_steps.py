@@ -14,7 +14,7 @@ _CLOSE = 1e-9  # of the length, to which steps fill it
 
 
 def ring_steps(lengths: Floats, sizes: Floats, rows: int, first: float | None) -> Floats:
-    """Return the steps (k, rows) on k lines of `lengths` (k,); the next cells have the lengths `sizes` (k,).
+    """Return the steps (k, rows) on k lines of `lengths` (k,); `sizes` (k,) are the cell lengths after them.
 
     Steps begin with `first`; if it is None, all ratios along a line are equal. If a ratio above `LARGEST`
     were needed, steps do not fill the length (see `largest_ratio`).

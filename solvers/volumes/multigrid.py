@@ -26,7 +26,7 @@ SWEEPS, FIRST = 12, 30  # on the coarsest level: in a cycle, and to start with
 class Transfer:
     """Operators along one direction between a level and the next coarser one.
 
-    For each result, an operator has the index of the first node that contributes, and the weights.
+    An operator has, for each of its results, the index of the first node that contributes, and weights.
     """
 
     up: tuple[NDArray[np.intp], Floats]  # (n, 2) linear interpolation to the fine nodes

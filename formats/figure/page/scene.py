@@ -59,7 +59,7 @@ class SceneSheet:
 
     `axis` is the direction normal to the layer (None: the lattice is a layer). `node` is the layer's index
     along `axis`. `ranges` are first and last node along each other direction. `across` (i, j or k) and `at`
-    repeat direction and index as counted in the whole block, if the lattice is a part of one.
+    are direction and index in the whole block, if the lattice is a part of a block.
     """
 
     lattice: int

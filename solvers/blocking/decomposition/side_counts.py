@@ -25,7 +25,7 @@ _NONE: Mapping[int, int] = MappingProxyType({})
 
 
 def sums_of(chords: Chords) -> Sums:
-    """Return for each side with a given cell count how many of its edges are in each chord (see `Chords`).
+    """Return, for each side with a given cell count, the number of its edges in each chord (see `Chords`).
 
     Raises InputError if such a side begins or ends where the boundary goes straight on.
     """
@@ -68,9 +68,9 @@ def suited(
     """Return the admissible cell counts of chords (rows of blocks), at least `least`, nearest to `counts`.
 
     Admissible counts are multiples of `multiple`, and give both sides of each periodic pair the same number
-    of cells. If `named`, sides with a given cell count have `multiple` times that count, divided by `finer`
-    and rounded up or down; `finer` is the number of cells that each cell becomes later. `fixed` prescribes
-    the counts of some chords, by index.
+    of cells. If `named`, sides with given cell counts get `multiple` times that count, divided by `finer`
+    (the factor of a later refinement) and rounded up or down. `fixed` prescribes the counts of some chords,
+    by index.
 
     Raises InputError if given counts contradict each other or are too small; SolverError if no counts are
     equal along periodic sides.

@@ -210,7 +210,7 @@ def _ring(loop: Loop, arcs: Floats, levels: Floats) -> Ring:
 def column_weights(index: Floats, low: Indices, high: Indices) -> tuple[Floats, Indices]:
     """Return weights (k, 4) of four columns for interpolation at `index` (k,), and the first columns (k,).
 
-    Columns before `low` (k,) or beyond `high` (k,), which are at the nearest corners, have zero weights.
+    `low` and `high` (k,) are the columns at the nearest corners; columns beyond them have zero weights.
     """
     first = np.clip(index.astype(np.intp) - 1, low, np.maximum(high - 3, low))
     width = np.minimum(high - first, 3)

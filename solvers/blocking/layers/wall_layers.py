@@ -222,7 +222,7 @@ def _sizes(domain: Domain, number: int) -> tuple[float, float]:
 
 @dataclass(frozen=True, eq=False)
 class Counts:
-    """Numbers of cells along the chords (rows of blocks) of a coarse layout, and the factors to the fine one.
+    """Numbers of cells along the chords (rows of blocks) of a layout, and factors to the final numbers.
 
     Parameters
     ----------

@@ -37,7 +37,7 @@ class WallRows:
     Parameters
     ----------
     loops : for each row, the index of the loop along which it goes.
-    across : (b, 2) index of the row that the lines of a block cross from south to north, and from west to
+    across : (b, 2) index of the row that a block's lines from south to north cross, and those from west to
         east; -1: no row. Refinement does not change it.
     back : (b, 2) whether these lines lead from the outer edge of the row to the wall.
     """

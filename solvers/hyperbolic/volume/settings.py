@@ -73,7 +73,7 @@ class VolumeMarch:
 
 
 class Smoothing(NamedTuple):
-    """Parameters of the march (``kernels/surfaces/march.h``), except `size`, and two of `march_graph`.
+    """Parameters of the smoothing while marching; ``kernels/surfaces/march.h`` describes most of them.
 
     `outer` is the explicit smoothing far from the wall, relative to the smoothing near it. Up to 6,
     levels around a sphere stay spheres; 16 makes better cells behind swept wings.

@@ -53,7 +53,7 @@ class ModelTask(Task):
         return PaperOperator(name, self.frame.topology, {}, self.model, self.frame, self.arrays())
 
     def figures(self, epoch: int) -> dict[str, Any]:
-        """Return the epoch, and for the training grids and the test grids the result of `judged`."""
+        """Return the epoch, and the results of `judged` for the training grids and for the test grids."""
         operator, own = self.operator(), self.samples
         parts = {name: judged(operator, own.pick(own.where(name))) for name in ("train", "test")}
         return {"epoch": epoch, **{name: figures for name, figures in parts.items() if figures}}

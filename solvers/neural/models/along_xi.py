@@ -104,9 +104,9 @@ class WNO(AlongXi):
 
 @cache
 def wavelets(n: int, levels: int) -> Floats:
-    """Return orthonormal periodic scaling functions, then wavelets, of the last level (2 n / 2^levels, n).
+    """Return the scaling functions, then the wavelets, of the last level: orthonormal and periodic.
 
-    Each row has the values at `n` nodes, a multiple of 2^levels.
+    Each row (2 n / 2^levels, n) has the values at `n` nodes, a multiple of 2^levels.
     """
     low = np.array(SCALING)
     high = low[::-1] * np.where(np.arange(low.size) % 2, -1.0, 1.0)

@@ -43,9 +43,9 @@ def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) ->
 
 
 def moved(base: Any, factor: Any, head: int, network: Moves, xp: Any) -> Any:
-    """Return unrolled O grids `base` (batch, m + 1, n), which have equal steps, moved by the network.
+    """Return O grids `base` (batch, m + 1, n), unrolled to strips with equal steps, moved by the network.
 
-    The last row of the result equals the first, without the period. `factor` (batch, 1, 1) scales the grids
+    The last row of the result repeats the first, without the period. `factor` (batch, 1, 1) scales the grids
     to unit size. `head` is the index of the network's output. For `network` see `coarse_grids.answered`.
     """
     strip = answered(base, (base * factor, 1.0 / factor), network, None, xp, around=True)

@@ -88,7 +88,7 @@ def convolution(weight: Any, places: Any, xp: Any) -> Any:
 
 
 def lift(weight: Any, seen: Any) -> Any:
-    """Return the equivariant matrix (8 out, FEATURES) of the first layer from `weight` (out, FEATURES)."""
+    """Return the matrix (8 out, FEATURES) of the equivariant first layer from its `weight` and `SEEN`."""
     return (weight[:, None, :, None] * seen).sum(2).reshape(ORDER * len(weight), -1)
 
 

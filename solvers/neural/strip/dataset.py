@@ -76,11 +76,11 @@ def _solved(boundary: Boundary) -> tuple[Complexes, Complexes, Complexes] | None
 
 @dataclass(frozen=True)
 class StripTargets:
-    """Inputs (n, CHANNELS, COLUMNS) and (n, SCALARS), and wanted outputs (n, 2 Q, COLUMNS) of mean square 1.
+    """Training data: inputs, as `encode` returns them, and wanted outputs (n, 2 Q, COLUMNS).
 
     The wanted outputs represent R, Winslow's solution minus the harmonic extension of the walls. An output
-    times `scale` gives the coefficients of R / size^2 in `basis` (Q, LEVELS - 2), the proper orthogonal
-    decomposition across the strip in the H1 inner product.
+    times `scale` is a coefficient of R / size^2 in `basis` (Q, LEVELS - 2), the proper orthogonal
+    decomposition across the strip in the H1 inner product. The mean square norm of outputs is 1.
     """
 
     channels: Floats
