@@ -121,7 +121,7 @@ class ProfileReport:
         ]
 
     def failures(self) -> list[str]:
-        """Return a line for each failed check whose limits no gate replaces."""
+        """Return a line for each failed check, except checks that the user's own limits (gates) replace."""
         return [
             f"profile {result.profile}: {result.check.figure} is {result.value:.6g}{result.figure.where}, "
             "and it must "
