@@ -80,7 +80,7 @@ class Patch:
         return may_be_wall(self.name, self.kind)
 
     def range(self, counts: tuple[int, ...]) -> Range:
-        """Return the index range of the nodes along each direction of a side that has `counts` nodes."""
+        """Return the first and last node index along each direction; `counts` are the side's node counts."""
         along: Range = ((self.start, self.stop),)
         return along if len(counts) == 1 else (*along, self.across or (0, counts[1] - 1))
 

@@ -67,8 +67,8 @@ def _beside_lines(points: Floats, corners: Indices, tangent: Bools) -> tuple[Flo
 def cubics(start: Floats, chord: Floats, first: Floats, last: Floats) -> Floats:
     """Return the coefficients (4, n, d) of n cubics in t from 0 to 1, constant first.
 
-    `start` (n, d) are their first points and `chord` (n, d) the vectors from there to their last points.
-    `first` and `last` (n, d) are the slopes at both ends.
+    `start` (n, d) are the points at t = 0. `chord` (n, d) are the vectors to the points at t = 1. `first` and
+    `last` (n, d) are the slopes at both ends.
     """
     return np.stack([start, first, 3 * chord - 2 * first - last, first + last - 2 * chord])
 

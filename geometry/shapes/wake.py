@@ -130,7 +130,7 @@ def c_boundary(
     chord: float = 0.0,
     notes: tuple[str, ...] = (),
 ) -> Boundary:
-    """Return the C boundary of a closed `wall` (n, 2) and a `wake` (m, 2) from its edge to the outlet.
+    """Return the C boundary of a closed `wall` (n, 2) and a `wake` (m, 2) from trailing edge to outlet.
 
     The wall runs clockwise from its sharp trailing edge. The wake ends in the direction of the unit vector
     `axis` (2,). The far field in front is a half circle with `centre` and `radius`. `curve`, `name`, `chord`

@@ -48,7 +48,7 @@ class Hollows:
 
 
 def hollows_of(surface: Surface) -> Hollows:
-    """Return the concave edges of a surface; none if they are shorter together than 1 % of its size."""
+    """Return the concave edges of a surface; none if their total length is below 1 % of its size."""
     quads, twin = surface.quads, surface.twin
     x = surface.nodes[quads]
     normal = np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])

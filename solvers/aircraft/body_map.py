@@ -61,7 +61,7 @@ class BodyMap:
         return np.stack([x, self.body.y - r * cos(theta), r * sin(theta)], axis=-1)
 
     def meridional(self, s: Floats, zeta: Floats) -> Floats:
-        """Return x and the distance from the axis (n, 2) at `s` (n,) and `zeta` (n,)."""
+        """Return x and the distance from the axis (n, 2) of points with coordinates `s` and `zeta` (n,)."""
         along, across = s * ((_LINES - 1) / self.body.length), zeta * (_LEVELS - 1)
         at_body = self.body.meridional(self.arcs(s)) - _between(self.table[:, :4], along, np.zeros_like(s))
         away = 1.0 - zeta

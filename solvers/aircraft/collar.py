@@ -66,8 +66,8 @@ def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
     """Return at which nodes of a section `root` lines to the corners of the rectangle `box` begin.
 
-    The first number counts nodes from the middle of the trailing edge to either side, the second from the
-    nose. With these numbers, at least `fewest`, cells on both sides of a corner have similar lengths.
+    The result is a distance in nodes from the middle of the trailing edge, and a distance from the nose. Both
+    are at least `fewest`. They are such that cells on both sides of a corner have similar lengths.
     """
     normals, half = _normals(root), (len(root) - 1) // 2
     tried = np.arange(fewest, half // 3 + 1)

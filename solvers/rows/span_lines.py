@@ -39,7 +39,7 @@ class SpanLines:
         return SpanLines(self.coefficients[:, columns])
 
     def at(self, heights: Floats) -> Floats:
-        """Return values (p, n, ...) at heights (p, n) or (p, 1)."""
+        """Return the values (p, n, ...) of the n polynomials at heights (p, n) or (p, 1)."""
         c = self.coefficients
         out, count = np.empty((len(heights), *c.shape[1:])), math.prod(c.shape[1:])
         flat = np.ascontiguousarray(c).reshape(len(c), count), np.ascontiguousarray(heights)

@@ -36,7 +36,7 @@ def spaced_cells(length: float, ends: Ends, growth: float, largest: float, least
 
 
 def two_sided(lengths: Floats, ends: Ends, growth: float, cells: int) -> Floats:
-    """Return arc lengths (n, cells + 1) on lines of `lengths` (n,); cells grow inwards from sizes `ends`."""
+    """Return arc lengths (n, cells + 1) of nodes on n lines; cells grow from both end sizes `ends`."""
     from_ends = _from_ends(ends, growth, cells)
     least, most = lengths / cells, lengths
     largest = least

@@ -78,10 +78,10 @@ def coarse_grids(sides: Sides, network: Network, head: int) -> Floats:
 def answered(z: Any, unit: Any, network: Moves, shares: Moves | None, xp: Any, around: bool = False) -> Any:
     """Return complex grids `z` (batch, n, n), moved by Picard steps and then by a network.
 
-    With `around`, `z` are O grids unrolled to strips (batch, m + 1, n). `unit` has the grids at unit size,
-    and factors (batch, 1, 1) that undo the scaling. `network` computes displacements from the grids and the
-    last Picard step. `shares` computes from grids and displacements which fraction (batch, 1, 1) of the
-    displacements is applied; None applies all. `xp` is the module of the arrays, numpy or torch.
+    With `around`, `z` are O grids unrolled to strips (batch, m + 1, n). `unit` are the same grids scaled to
+    unit size, and factors (batch, 1, 1) that undo the scaling. `network` computes displacements from grids
+    and Picard step. `shares` computes the fraction (batch, 1, 1) of the displacements to apply; None applies
+    all. `xp` is the module of the arrays, numpy or torch.
     """
     sized, back = unit
     near, step = approach(sized, xp, around)

@@ -54,7 +54,7 @@ class Trails:
         return trail, float(start + part * (stop - start))
 
     def locate(self, trail: Indices, length: Floats) -> tuple[Indices, Floats]:
-        """Return on which pieces (q,) q points of trails lie, and their positions (q,) there, 0 to 1."""
+        """Return the pieces (q,) at positions `length` (q,) on trails, and the fraction of each before it."""
         ends = self.length[self.first[1:] + np.arange(len(self.first) - 1)]
         offset = np.append(0.0, np.cumsum(ends))
         owner = np.repeat(np.arange(len(ends)), np.diff(self.first))

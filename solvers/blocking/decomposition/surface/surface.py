@@ -164,7 +164,7 @@ def _split(triangulation: Triangulation, triangle: Indices, edge: Indices) -> Tr
 
 
 def join_triangles(triangles: Indices) -> tuple[Indices, Indices]:
-    """Return the triangle (t, 3) across each edge, and the edge's index (0 to 2) in it; both -1 at walls."""
+    """Return the neighbour (t, 3) across each edge of `triangles`, and the edge's index in it; -1 if none."""
     start, stop = triangles.ravel(), triangles[:, NEXT].ravel()
     size = int(triangles.max()) + 1
     key, mate = start * size + stop, stop * size + start
