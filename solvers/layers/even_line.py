@@ -112,8 +112,8 @@ def evened_places(
 
     Each of the functions `measures` turns positions into lengths, whose differences are steps. Positions in
     the mask `fixed` (n,) stay. `limit` is the logarithm of the largest ratio; it is relaxed if positions
-    would move by more than `most` steps. On a closed curve, the last step leads to the first position. `links` are further conditions on positions.
-    `change` is the weight μ of `GrowthLimit`.
+    would move by more than `most` steps. On a closed curve, the last step leads to the first position.
+    `links` are further conditions on positions. `change` is the weight μ of `GrowthLimit`.
     """
     line = _Line.of(places, fixed, measures, closed, links, change)
     new = places

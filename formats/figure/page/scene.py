@@ -34,7 +34,7 @@ _LAYERS = 3  # fewest layers across each direction of such a volume
 class Lattice:
     """Nodes (ni, nj, d) or (ni, nj, nk, 3) of a block or of a part of it.
 
-    `start` has the indices of its first cell in the block. `fixed` is the index direction normal to a patch of a surface.
+    `start` has the indices of its first cell in the block. `fixed` is the direction normal to a surface.
     """
 
     block: int
