@@ -139,7 +139,7 @@ class SurfaceWing:
         return float(np.interp(place, np.arange(len(self.strips) + 1), self._bounds))
 
     def places(self, arcs: Floats) -> Floats:
-        """Return the places (n,) at lengths `arcs` (n,): the inverse of `arc`."""
+        """Return the places (n,) at lengths `arcs` (n,) from the upper trailing edge (inverse of `arc`)."""
         return np.interp(arcs, self._bounds, np.arange(len(self.strips) + 1))
 
     @property

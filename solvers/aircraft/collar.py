@@ -96,7 +96,7 @@ def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]
 def outer_loop(root: Floats, box: Rectangle, corners: tuple[int, int]) -> Floats:
     """Return the nodes (n, 2) on the rectangle `box` at which lines from a section `root` (n, 2) end.
 
-    The root runs from the middle of the trailing edge to larger theta. `corners` is from `corner_nodes`.
+    The root begins at the middle of the trailing edge, towards larger theta. `corners`: see `corner_nodes`.
     """
     half = (len(root) - 1) // 2
     edge, nose = corners

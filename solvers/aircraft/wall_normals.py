@@ -111,8 +111,8 @@ def _chord(edge: Floats, wing: WingLines) -> float:
 def off_tip(points: Floats, cap: Indices, ring: Indices, wing: WingLines) -> Floats:
     """Return `points` (k, p, 3) beyond a tip, moved so that the p lines leave the tip along normals.
 
-    `cap` (c,) are indices of lines that start on the tip. `ring` (n, m) are lines around the tip; they turn
-    less with distance from it.
+    `cap` (c,) are indices of lines that start on the tip. `ring` (n, m) are lines around the tip, which are
+    moved less the farther they are from it.
     """
     apart = arc_lengths(points[0, ring])
     fade = 1.0 - apart / apart[:, -1:]

@@ -28,7 +28,7 @@ OPENED = 20, 10, 10  # iterations of each stage of opening
 
 @dataclass(frozen=True, eq=False)
 class Slides:
-    """Nodes that slide in a plane or on a line: indices (k,), and matrices (k, 3, 3) that project onto it."""
+    """Nodes that slide in planes or on lines: indices (k,), and the projections (k, 3, 3) of moves."""
 
     nodes: Indices
     projections: Floats

@@ -52,7 +52,7 @@ def even_shares(nodes: Floats, steps: Floats, rate: float, constant: int) -> Flo
 
     Parameters
     ----------
-    nodes, steps : a marched grid (ni, nj, 2), and its n steps.
+    nodes, steps : nodes (ni, nj, 2) of a marched grid, and the n steps between its levels.
     rate : logarithm of the largest permitted growth ratio.
     constant : number of equal steps at the wall.
     """

@@ -61,10 +61,10 @@ class GrowthLimit:
 
 
 def damped(values: Callable[[Numbers], Floats], at: Numbers, step: Numbers, part: Indices) -> Numbers:
-    """Return `step` (m,) with its numbers halved until values decrease.
+    """Return the `step` (m,) of unknowns, halved until all values (p,) decrease; 0 if that does not help.
 
-    `values` returns the values (p,) for given unknowns; `at` (m,) are the present unknowns. `part` (m,) is
-    the index of the value that depends on each unknown. Where no halving helps, numbers become 0.
+    `values` computes the values from unknowns; `at` (m,) are the present unknowns. Each value depends on some
+    of the unknowns, whose steps are halved together: `part` (m,) has the index of the value.
     """
     start = values(at)
     share = np.ones(len(start))

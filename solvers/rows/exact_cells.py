@@ -14,13 +14,13 @@ def exact_in_corners(
     nodes: Floats, begins: tuple[Floats, Floats], sizes: tuple[float, Floats],
     in_space: Callable[[Floats], Floats],
 ) -> Floats:  # fmt: skip
-    """Return nodes (..., 3), moved by Newton's method until both lines to each node have given lengths.
+    """Return nodes (..., 3), moved by Newton's method to given distances from two points each.
 
     Parameters
     ----------
     nodes : (..., 3) nodes in any coordinates.
-    begins : starts (..., 3) of the two lines to each node.
-    sizes : lengths of the two lines; the second is an array (...).
+    begins : (..., 3) first and second point for each node, in the same coordinates.
+    sizes : distances from the first points (a number) and from the second points (an array).
     in_space : maps coordinates to x, y, z.
     """
     starts, before = [in_space(begin) for begin in begins], np.inf

@@ -127,11 +127,11 @@ class SectionPlane:
         return np.append(self.cascade.blade.curve.knots, self.cascade.blade.length)
 
     def wall_arcs(self, u: Floats) -> Floats:
-        """Return the arc lengths (n,) on the blade at places u (n,), 0 to 1."""
+        """Return the arc lengths (n,) on the blade at places `u` (n,), which run from 0 to 1 around it."""
         return np.interp(u, np.append(self.places, 1.0), self._walls)
 
     def places_of(self, arcs: Floats) -> Floats:
-        """Return the coordinates u (n,), 0 to 1 around the blade, at the arc lengths (n,) on it."""
+        """Return the places u (n,), from 0 to 1 around the blade, at arc lengths `arcs` (n,) on it."""
         return np.interp(np.mod(arcs, self._walls[-1]), self._walls, np.append(self.places, 1.0))
 
     def front_arcs(self, u: Floats) -> Floats:

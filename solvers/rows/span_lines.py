@@ -48,7 +48,7 @@ class SpanLines:
 
 
 def slopes_at_keys(values: Floats) -> Floats:
-    """Return the derivatives (k, n, ...) at `key_heights` of polynomials through `values` (k, n, ...)."""
+    """Return the derivatives (k, n, ...) of polynomials with `values` (k, n, ...) at the k `key_heights`."""
     return _times(_slopes(len(values)), values)
 
 

@@ -161,7 +161,7 @@ class LineArcs:
         return self.parts_at(spacing.at(self.lengths))
 
     def parts_at(self, arcs: Floats) -> Floats:
-        """Return the parameters (cells + 1, n) at relative arc lengths (cells + 1, n)."""
+        """Return the parameters (cells + 1, n) of nodes on the n lines at relative arc lengths `arcs`."""
         parts = np.clip(arcs + self.ahead.at(arcs), 0.0, 1.0)
         parts[0], parts[-1] = 0.0, 1.0
         return parts

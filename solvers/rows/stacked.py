@@ -70,7 +70,7 @@ class StackedRow:
 
     @cached_property
     def levels(self) -> tuple[int, ...]:
-        """Indices of the levels that bound zones."""
+        """Index of the first level of each zone of the span, and of the last level of the last zone."""
         return tuple(np.cumsum([0, *(zone.cells for zone in self.zones)]).tolist())
 
     @cached_property

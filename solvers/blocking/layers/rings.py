@@ -227,7 +227,7 @@ def column_weights(index: Floats, low: Indices, high: Indices) -> tuple[Floats, 
 
 
 def started(lines: Floats, begin: Floats) -> Floats:
-    """Return lines (k, m, 2) moved to start at `begin` (k, 2); displacements decrease to 0 at their ends."""
+    """Return lines (k, m, 2) moved to start at `begin` (k, 2); their last nodes do not move."""
     moved = lines + (1.0 - arc_parts(lines))[..., None] * (begin - lines[:, 0])[:, None]
     moved[:, 0] = begin
     return np.asarray(moved)

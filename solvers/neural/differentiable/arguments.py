@@ -93,7 +93,7 @@ def batched(
 
 
 def unit_of(values: Tensor) -> Tensor:
-    """Return for each batch member of `values` (batch, ...) a power of 2 near its range, maximum - minimum.
+    """Return a power of 2 near the range (maximum - minimum) of each batch member of `values` (batch, ...).
 
     The shape (batch, 1, ...) of the result broadcasts with `values`. Division by it is exact.
     """

@@ -45,7 +45,7 @@ class StripFNO(NamedParameters):
         super().__init__({name: _first_of_strip(name, shape, wanted) for name, shape in wanted.items()})
 
     def forward(self, channels: Tensor, scalars: Tensor) -> Tensor:
-        """Return outputs (batch, outputs, columns) for (batch, inputs, columns) and (batch, scalars)."""
+        """Return outputs (batch, outputs, columns) for `channels` (batch, inputs, columns) and `scalars`."""
         out: Tensor = StripNetwork(dict(self.named_parameters()), torch)(channels, scalars)
         return out
 

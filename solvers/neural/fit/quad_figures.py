@@ -46,7 +46,7 @@ def held_out_figures(answers: Grids, base: Grids, winslow: Grids, variational: G
 
 
 def angles(z: Grids) -> tuple[Floats, Floats]:
-    """Return the maximum and the mean (m,) over cells of each cell's greatest angle, for grids `z` (m, n, n).
+    """Return maximum and mean (m,) of the greatest angles of the cells in each of the grids `z` (m, n, n).
 
     Angles are in degrees. Both numbers are 360 for a grid with folded cells.
     """

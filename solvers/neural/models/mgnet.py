@@ -45,7 +45,7 @@ class MGNet(Architecture):
         return dense_shapes("net", sizes, stacked=frame.count)
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
-        """Return boundary points (count, s, 2), centre (count, 2), size (count, 1) of each geometry."""
+        """Return boundary points (count, s, 2), centre (count, 2) and size (count, 1) of the geometries."""
         edges = samples.boundaries()
         outlines = [np.concatenate([b.south, b.north, b.west, b.east]) for b in edges]
         centre = np.array([0.5 * (o.min(axis=0) + o.max(axis=0)) for o in outlines])

@@ -129,7 +129,7 @@ def _own_size(samples: _Samples, largest: float) -> Floats:
 
 
 def place_nodes(domain: Domain, sizes: WallSizes) -> tuple[Indices, Floats]:
-    """Return loop (b,) and arc length (b,) of the wall nodes, spaced by the target edge lengths `sizes`.
+    """Return the loop indices and arc lengths (b,) of b wall nodes, spaced by target edge lengths `sizes`.
 
     Corners are nodes. A wall between two corners has at least 2 edges, a loop without corners at least 8.
     """

@@ -74,7 +74,7 @@ class Triangulation:
 
     @cached_property
     def walls(self) -> tuple[Indices, Indices]:
-        """For each edge on a wall, its triangle (w,) and its index (w,), 0 to 2, in the triangle."""
+        """For each of w edges on walls, its triangle (w,) and its index (w,), 0 to 2, in this triangle."""
         triangles, edges = np.nonzero(self.neighbours < 0)
         return triangles, edges
 

@@ -25,7 +25,7 @@ _STEPS = 8  # of Newton's method for the nearest point of a curve
 class Mirror:
     """A mirror line through `centre` (2,) along the unit vector `along` (2,).
 
-    The image of a point of boundary loop k at arc length s is at `sums[k]` - s on loop `loops[k]`.
+    It maps boundary loop k to loop `loops[k]`, and the arc length s on it to `sums[k]` - s.
     """
 
     centre: Floats
