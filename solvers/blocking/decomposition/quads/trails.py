@@ -44,7 +44,7 @@ class Trails:
         return self._on_piece(self.vertex == vertex, 0.0)
 
     def at_edge(self, face: int, edge: int, part: float) -> tuple[int, float]:
-        """Return the index of the trail along a wall edge, and its length up to `part` (0 to 1) of the edge."""
+        """Return the index of the trail along a wall edge, and its length up to a `part` (0 to 1) of it."""
         return self._on_piece((self.face == face) & (self.edge == edge), part)
 
     def _on_piece(self, which: Bools, part: float) -> tuple[int, float]:
