@@ -155,8 +155,8 @@ def _oblique_base(section: CleanSection, chord: float) -> tuple[str, ...]:
 def base_note(wall: Floats, corner: Floats, base: float, chord: float, *, fixed: bool) -> tuple[str, ...]:
     """Return a note if a base uses most nodes, or if cell sizes jump at its lower corner.
 
-    `wall` (n, 2) runs from the middle of the base, whose length is `base` and whose lower corner is `corner`
-    (2,). `fixed` says that the user gave the number of nodes on the base.
+    `wall` (n, 2) runs from the middle of the base. `base` is the length of the base, `corner` (2,) its lower
+    corner. `fixed` says that the user gave the number of nodes on the base.
     """
     steps = norms(np.diff(wall, axis=0))
     arcs = np.cumsum(steps)

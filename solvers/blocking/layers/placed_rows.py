@@ -39,7 +39,7 @@ def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings)
 
 
 def with_layers(layout: Layout, rows: WallRows, settings: Sequence[LayerSettings]) -> Layout:
-    """Return a fine layout whose `rows` of blocks at walls are layers: nodes move along lines across rows.
+    """Return a fine layout with layers in its `rows` of blocks at walls; nodes move along lines across rows.
 
     `settings` has one entry per row. First cells have exactly the given height. Heights grow up to the size
     of the cells beyond the layers.
