@@ -26,7 +26,7 @@ def lines_of_blocks(
 ) -> list[Lines]:
     """Return which grid lines to draw in each block, so that drawn lines continue across block boundaries.
 
-    `singles` has each block as a grid. `parts` has the visible cells of each block; None: no cell is visible.
+    `singles` has each block as a grid. `parts` has the visible cells of each block, None if it has none.
     """
     steps = [[every or 1, every or 1] for _ in singles]
     flips = [[False, False] for _ in singles]

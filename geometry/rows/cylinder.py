@@ -21,7 +21,7 @@ def on_cylinder(
     section : the airfoil with its chord; its z is the radius.
     about : point of the section, in chords from the leading edge, that is placed at `x` and `theta`.
     stagger : angle of the chord from the axis, towards growing theta, in radians.
-    x, theta : position of this point; theta = atan2(y, z) in radians.
+    x, theta : position of the point `about`; theta = atan2(y, z) in radians.
     """
     origin, length = section.frame
     shape, notes = section.shape, section.shape.notes

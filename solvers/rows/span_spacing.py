@@ -81,7 +81,7 @@ def smooth_arcs(lengths: Floats, ends: tuple[Floats | float, Floats | float | No
 def smooth_cells(
     length: Floats | float, ends: tuple[Floats | float, Floats | float | None], growth: float, least: int
 ) -> int:
-    """Return the least number of cells, not below `least`, with which `smooth_arcs` grows by up to `growth`.
+    """Return the least number of cells, at least `least`, that `smooth_arcs` needs for ratios up to `growth`.
 
     `length` and `ends` are numbers, or (n,) for n lines.
     """

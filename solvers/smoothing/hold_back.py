@@ -86,7 +86,7 @@ def held_back(grid: Grid, original: Layout, layout: Layout, before: PlaneMeasure
 
 
 def part_of_the_way(original: Layout, layout: Layout, part: Floats) -> Layout:
-    """Return `original` with nodes moved by fractions `part` (n,) of the way to `layout`, along walls."""
+    """Return `original` with nodes moved by fractions `part` (n,) of their way to `layout`."""
     old, mesh = original.mesh, layout.mesh
     nodes = old.nodes + part[:, None] * (mesh.nodes - old.nodes)
     arc = old.places.arc.copy()

@@ -109,7 +109,7 @@ class WallLayers:
     def is_free(self, number: int, mesh: QuadMesh, wake: Sequence[int]) -> bool:
         """Return whether a wake reaches the outer loop and has room for layers on its whole length.
 
-        `wake` are the indices of its nodes in `mesh`, beginning at the sharp edge of loop `number`.
+        `wake` has the indices of the wake's nodes in `mesh`, beginning at the sharp edge of loop `number`.
         """
         return bool(mesh.places.loop[wake[-1]] == 0) and self.has_room(number, mesh.nodes[wake])
 
