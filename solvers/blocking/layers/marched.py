@@ -56,7 +56,7 @@ def fitted(
     start: Floats, arcs: Floats, length: float, room: Floats, thickness: float, first: float,
     attempts: Sequence[MarchSettings], *, place: Callable[[int], str],
 ) -> Floats:  # fmt: skip
-    """Return nodes (n, m, 2) of unfolded layers of total `thickness`, or less where `room` (n,) is small.
+    """Return nodes (n, m, 2) of valid layers of total `thickness`, or less where `room` (n,) is small.
 
     `start` (n, 2) are the nodes of the closed wall, `arcs` (n,) their arc lengths, and `length` is its total
     length. `place` returns, for messages, the position of a column as text. Raises InputError if a gap is too
