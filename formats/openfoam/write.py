@@ -37,8 +37,9 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
     """Write the only grid of `grids` into the folder of `path`; the file at `path` is left empty.
 
     The two planes of a planar grid, or of one layer between symmetry planes, are a patch of type ``empty``.
-    Cells at collapsed sides become prisms or pyramids. If periodic sides are related by a rotation, all cells
-    form a zone with the name of the grid, for a rotating frame. Missing dictionaries in ``system`` are added.
+    Cells at collapsed sides become prisms or pyramids. In blade rows, and if periodic sides are related by a
+    rotation, all cells form a zone with the name of the grid, for a rotating frame. Missing dictionaries in
+    ``system`` are added.
     """
     grid = only_one(grids, "a case")
     low, high = grid.box
@@ -63,7 +64,7 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
     with whole_folder(path.parent / "constant" / "polyMesh") as folder:
         write_mesh(folder, points, faces, binary=binary)
         write_boundary(folder / "boundary", patches, len(faces.neighbour))
-        if any(screw_of(pair.motion).angle for pair in pairs):
+        if grid.provenance.get("method") == "row" or any(screw_of(pair.motion).angle for pair in pairs):
             (name,) = words([grid.name or _ZONE], letter=True).values()
             write_zone(folder / "cellZones", name, int(faces.owner.max()) + 1, binary=binary)
     for name, entries in _DICTIONARIES.items():

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -12,11 +12,12 @@ from meshonet.formats.rows.points import placed_blocks, point_blocks
 from meshonet.formats.source import Source, open_source
 from meshonet.formats.stack_table import section_shape
 from meshonet.formats.toml_table import Table
-from meshonet.geometry.arrays import Floats, arc_parts, extent_of
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.rows.cylinder import on_cylinder
+from meshonet.geometry.rows.dimensions import row_dimensions
 from meshonet.geometry.rows.frame import AXES, UNITS, axis_along, axis_name
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.rows.trim import Plane, WallPlanes
@@ -57,21 +58,24 @@ def read_row(data: Table, source: Source) -> Row:
     blades = data.number("blades")
     if blades != round(blades):
         raise data.error("blades", f"{blades:g} is no whole number", "count them")
-    span = _span(hub, shroud)
-    gaps = _gap(data, "tip_gap", span), _gap(data, "hub_gap", span)
     turned = None if frame == axis_along(AXES["x"]) else frame
     name = data.text("name", source.stem or "row")
 
-    def row(scale: float) -> Row:
+    def row(scale: float, tip: float = 0.0, foot: float = 0.0) -> Row:
         blade = tuple(points * scale for points in profiles)
-        tip, foot = (gap * scale for gap in gaps)
-        return Row(blade, hub * scale, shroud * scale, int(blades), tip, foot, name, notes, turned, unit)
+        gaps = tip * scale, foot * scale
+        return Row(blade, hub * scale, shroud * scale, int(blades), *gaps, name, notes, turned, unit)
 
+    def span() -> float:
+        return row_dimensions(row(UNITS[unit])).span
+
+    gaps: tuple[float, ...] = ()
     with _located(places):
         try:
-            return row(UNITS[unit])
+            gaps = tuple(_gap(data, key, span) for key in ("tip_gap", "hub_gap"))
+            return row(UNITS[unit], *gaps)
         except InputError:
-            row(1.0)  # so that the message has the numbers of the files
+            row(1.0, *gaps)  # so that the message has the numbers of the files
             raise
 
 
@@ -110,7 +114,7 @@ def _profiles(data: Table, folder: Path, frame: Motion) -> tuple[list[Floats], l
         if most > np.pi:
             raise data.error("coordinates", f"theta of a profile spans {most:.4g}", "give theta in radians")
         columns = [points.T for points in profiles]
-        profiles = [np.stack([x, r * sin(theta), r * cos(theta)], axis=1) for x, r, theta in columns]
+        profiles = [np.stack([x, r * cos(theta), r * sin(theta)], axis=1) for x, r, theta in columns]
     else:
         profiles = [frame(points) for points in profiles]
     return profiles, [place for _, place in blocks]
@@ -157,19 +161,8 @@ def _plane(data: Table, key: str) -> Plane | None:
     return ends[0], ends[1]
 
 
-def _span(hub: Floats, shroud: Floats) -> float:
-    """Return the median distance of points at equal parts of hub and shroud; 0 if one has no length."""
-    if not min(extent_of(hub), extent_of(shroud)) > 0.0:
-        return 0.0
-    share = np.linspace(0.0, 1.0, 101)
-    low, high = (
-        np.stack([np.interp(share, arc_parts(each), each[:, k]) for k in (0, 1)]) for each in (hub, shroud)
-    )
-    return float(np.sort(np.hypot(*(high - low)))[50])
-
-
-def _gap(data: Table, key: str, span: float) -> float:
-    """Return a gap, a length or a part of the span."""
+def _gap(data: Table, key: str, span: Callable[[], float]) -> float:
+    """Return a gap, given as a length or as a percentage of the span."""
     value = data.data.get(key, 0.0)
     if isinstance(value, str):
         match = _PERCENT.fullmatch(value)
@@ -178,8 +171,8 @@ def _gap(data: Table, key: str, span: float) -> float:
         except ValueError:
             part = math.nan
         if not 0.0 <= part < 50.0:
-            raise data.error(key, f"{value!r} is no part of the span", 'give a length, or "1 %"')
-        return 0.01 * part * span
+            raise data.error(key, f"{value!r} is no part of the span", 'give a length as a number, or "1 %"')
+        return 0.01 * part * span() if part else 0.0
     gap = data.number(key, 0.0)
     if gap < 0.0:
         raise data.error(key, f"{gap:g} is negative", "use 0 or more")

@@ -117,7 +117,8 @@ def _joined(
             ends = (below + number, "top", face), (above + number, "bottom", face)
             connections.append(Connection(*ends[0], *ends[1], (1, 2)))  # type: ignore[arg-type]
     made = in_threads(lambda block: _block(*block), blocks)
-    return Grid(tuple(made), tuple(patches), tuple(connections), row.name)
+    facts = {"method": "row"}
+    return Grid(tuple(made), tuple(patches), tuple(connections), row.name, facts)
 
 
 def _block(nodes: Floats, ids: Indices) -> Block:

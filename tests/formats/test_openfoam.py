@@ -220,5 +220,11 @@ def test_a_grid_whose_sides_are_not_turned_has_no_zones(tmp_path: Path) -> None:
     assert not zones(tmp_path).exists()
 
 
+def test_a_blade_row_without_periodic_sides_has_its_zone(tmp_path: Path) -> None:
+    """As a full annulus, which may rotate too."""
+    write_grids(tmp_path / "case.foam", [channel().with_provenance(method="row")])
+    assert zones(tmp_path).exists()
+
+
 def zones(case: Path) -> Path:
     return case / "constant" / "polyMesh" / "cellZones"

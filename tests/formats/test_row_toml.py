@@ -11,6 +11,7 @@ import pytest
 import meshonet
 from meshonet.formats.stack import stack_of
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.rows.dimensions import row_dimensions
 from meshonet.geometry.rows.row import Row
 
 SECTIONS = "".join(
@@ -138,7 +139,7 @@ def test_theta_is_in_radians(tmp_path: Path) -> None:
     for unit in (1.0, 180.0 / np.pi):
         text = ""
         for x, y, z in (p for points in blade_row.profiles() for p in [points.T]):
-            rows = np.stack([x, np.hypot(y, z), unit * np.arctan2(y, z)], axis=1)
+            rows = np.stack([x, np.hypot(y, z), unit * np.arctan2(z, y)], axis=1)
             text += "profile\n" + "".join("{:.17g} {:.17g} {:.17g}\n".format(*row) for row in rows)
         (tmp_path / "profile.curve").write_text(text)
         if unit == 1.0:
@@ -157,18 +158,19 @@ def turned(line: str) -> str:
 
 def test_gaps_may_be_parts_of_the_span(tmp_path: Path) -> None:
     row = read(tmp_path, 'tip_gap = "2 %"\nhub_gap = 0.01')
-    assert row.tip_gap == pytest.approx(0.02 * 0.925, rel=1e-3)
+    assert row.tip_gap == pytest.approx(0.02 * row_dimensions(row).span, rel=1e-3)
     assert row.hub_gap == 0.01
 
 
-def test_parts_of_the_span_do_not_depend_on_where_points_are_given(tmp_path: Path) -> None:
+@pytest.mark.parametrize("planes", ["", "inlet = -0.5\noutlet = 1.2"])
+def test_parts_of_the_span_are_of_the_span_at_the_blade(tmp_path: Path, planes: str) -> None:
     row = read(tmp_path, 'tip_gap = "2 %"')
-    path = blade_row.write_row(tmp_path, 'tip_gap = "2 %"')
+    path = blade_row.write_row(tmp_path, f'tip_gap = "2 %"\n{planes}')
     share = np.linspace(0.0, 1.0, 200) ** 4  # nearly all at the inlet
     (tmp_path / "hub.csv").write_text("".join(f"{3 * t - 1},{2 + 0.05 * t}\n" for t in share))
     other = stack_of(str(path))
     assert isinstance(other, Row)
-    assert other.tip_gap == pytest.approx(row.tip_gap, rel=1e-9)
+    assert other.tip_gap == pytest.approx(row.tip_gap, rel=1e-6)
 
 
 def test_airfoils_on_cylinders_have_chord_and_stagger_and_round_edges(tmp_path: Path) -> None:
