@@ -204,7 +204,7 @@ both with the solvers. CPU times are medians, for one thread.
   whose Winslow grid has folded cells do not count.
 - *distance*: relative L2 distance to the converged solution of Winslow's equations.
 
-Bodies for which Winslow's or the variational solver fails are left out: 2 of 40.
+Bodies for which Winslow's or the variational solver ends with an error are left out: 2 of 40.
 """
 TAIL = """
 ## Conclusions

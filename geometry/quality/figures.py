@@ -38,7 +38,7 @@ FIGURES: Mapping[str, str] = MappingProxyType({
 
 @dataclass(frozen=True)
 class Figure:
-    """A value with its node or cell `at` ([block,] i, j[, k]) and the direction `along` of its grid line."""
+    """A value, the indices ([block,] i, j[, k]) of its node or cell, and the direction of its grid line."""
 
     value: float
     at: tuple[int, ...] | None = None

@@ -48,7 +48,7 @@ Reynolds = Annotated[float | None, _option(
 
 
 def at_walls(text: str | None, parameter: str) -> Any:
-    """Return the value of an option, or its values by wall; None for None. Raises InputError: other text.
+    """Return the value of an option, or its values by wall; None for None. Raises InputError: not a value.
 
     >>> at_walls("1e-3", "first_cell"), at_walls("tubes=1e-3,floor=5e-3", "first_cell")
     (0.001, {'tubes': 0.001, 'floor': 0.005})

@@ -37,10 +37,10 @@ def infer_many(
 
     `model` is the name of a shipped model, the path of a ``.safetensors`` file, or ``base`` for the conformal
     solver; None is the default of the topology. `polish`: see `operator.Operator.solve`. `device` is where
-    torch computes the grids; ``auto`` polish then means 3 Picard steps for airfoil operators, none
-    for other operators. With `fallback`, grids without accepted `confidence` are replaced by grids of the
-    method that the network imitates. Raises InputError if there is no such model or device, or if a boundary
-    does not suit the model.
+    torch computes the grids; on a device, polish ``auto`` means 3 Picard steps for airfoil operators, none
+    for others. With `fallback`, a grid whose expected error is too large (see `confidence`) is replaced by
+    that of the method that the network imitates. Raises InputError if there is no such model or device, or
+    if a boundary does not suit the model.
     """
     named = None if model is None else load(model)
     solutions: dict[int, Solution] = {}

@@ -128,7 +128,7 @@ class Chords:
         return least
 
     def cells(self, counts: Indices) -> int:
-        """Return the total number of cells, for `counts` (chords,) of cells along the edges of chords."""
+        """Return the total number of cells, if chord k has `counts`[k] cells along each of its edges."""
         along = counts[self.chord[self.sides]]
         return int((along[:, 0] * along[:, 2]).sum())
 

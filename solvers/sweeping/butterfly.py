@@ -81,7 +81,7 @@ class CrossSection:
 def planned(
     sections: Sequence[CrossSection], growth: float = GROWTH, rows: int | None = None, *, radial: bool = False
 ) -> FiveBlocks:
-    """Return one division for all sections, with a growth ratio of at most `growth` or else the smallest.
+    """Return one division for all sections, with a growth ratio of at most `growth`, or the least possible.
 
     `rows` is the number of rows of the ring, by default the smallest that keeps to `growth`. `radial`, for
     circles, aligns the lines of the ring with radii.

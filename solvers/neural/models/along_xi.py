@@ -106,7 +106,7 @@ class WNO(AlongXi):
 def wavelets(n: int, levels: int) -> Floats:
     """Return the scaling functions, then the wavelets, of the last level: orthonormal and periodic.
 
-    Each row (2 n / 2^levels, n) has the values at `n` nodes, a multiple of 2^levels.
+    The array (2 n / 2^levels, n) has one function per row, with its values at n nodes; 2^levels divides n.
     """
     low = np.array(SCALING)
     high = low[::-1] * np.where(np.arange(low.size) % 2, -1.0, 1.0)
