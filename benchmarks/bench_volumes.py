@@ -65,8 +65,8 @@ Use `variational`, not 3DMeshNet: the network takes far more CPU time and makes 
 A 3DMeshNet (`train --model meshnet`) is trained for one domain, here for each of the first {count} domains
 above, with {epochs} steps (default 15,000). The training is part of the CPU time.
 
-- *3DMeshNet*: the given boundary nodes replace those of the network (`infer --answer pasted`), whose
-  largest error is {off} % of the domain size (median over the domains).
+- *3DMeshNet*: the given boundary nodes replace the predicted ones (`infer --answer pasted`), whose largest
+  error is {off} % of the domain size (median over the domains).
 - *3DMeshNet, repaired*: folded cells are repaired too, as by `infer` without options.
 """
 

@@ -122,7 +122,7 @@ class Grid(Connected):
     ) -> Grid:
         """Return the grid of a single block (see `Block`); its connections are found from its nodes.
 
-        In the topology ``c``, the wake is the start of the south side that is repeated in reverse at its end.
+        In the topology ``c``, the south side starts and ends with the nodes of the wake, in opposite order.
         Without `patches`, the grid gets the `default_patches`.
 
         Raises InputError: as `Block`; an O grid that is not closed, a C grid without a wake.

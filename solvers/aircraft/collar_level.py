@@ -91,8 +91,8 @@ def planned_collar(
 ) -> "tuple[CollarPlan, list[CollarLevel]]":
     """Return the plan for the collars (cells around sections) of a wing, and the collar around each hole.
 
-    `holes` are the sections of the wing from the root on. `corners` is the result of `corner_nodes`. Above
-    and below collars, there are as few cells as growth permits.
+    `holes` are the sections of the wing from the root on. `corners` is the result of `corner_nodes`. There
+    are as few rows of cells on both sides of the wing as growth permits.
     """
     edge, nose = corners
     plan = CollarPlan(edge, nose, 4, FEWEST, FEWEST, first)

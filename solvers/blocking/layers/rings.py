@@ -114,9 +114,9 @@ def march_ring(
     """Return the ring of layers around loop `number`, as thick as `thickness` where there is room.
 
     `first` is the height of first cells, `largest` the greatest length of cells along the wall, both in the
-    domain's unit. The ring is symmetric about `mirrors` of the loop. `room` (n,) limits the thickness at the
-    n columns of an earlier ring `before`. Raises InputError, with the position, if no layer fits in a gap, or
-    if every march folds at a wall.
+    domain's unit. The ring is symmetric about `mirrors` of the loop. `room` (n,) is the largest
+    thickness at the n columns of an earlier ring, `before`. Raises InputError, with the position, if no layer
+    fits in a gap, or if every march folds at a wall.
     """
     loop = domain.loops[number]
     own = [mirror for mirror in mirrors if mirror.loops[number] == number]
