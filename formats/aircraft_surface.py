@@ -54,7 +54,7 @@ def surface_body(row: Table, folder: Path) -> tuple[Body, AircraftAxes, tuple[st
 
     The key ``patches`` may select patches of the file; the default is all with a side in the plane of
     symmetry. Paths are relative to `folder`. Raises InputError if the file has no surface, or if the body has
-    holes or is not one half.
+    holes or is not half a body.
     """
     row.only("name", *KEYS)
     file = _read(row, folder)

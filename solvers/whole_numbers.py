@@ -39,7 +39,7 @@ def difference(first: Iterable[int], second: Iterable[int], low: float = 0.0, hi
 def whole_numbers(wanted: Floats, least: Floats, rows: Sequence[Row]) -> Indices:
     """Return integers n (k,) that are at least `least` (k,), near `wanted` (k,), and satisfy constraints.
 
-    They minimise the sum of n / wanted + wanted / n, which is nearly the sum of the squares of
+    The integers minimise the sum of n / wanted + wanted / n, which is nearly the sum of the squares of
     log(n / wanted). `rows` are the constraints. Raises SolverError if there is no solution or none was found.
     """
     if not len(wanted):

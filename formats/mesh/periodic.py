@@ -81,7 +81,7 @@ def periodic_pairs(
     """Return the pairs of periodic boundaries of a grid, one for each motion and pair of patch names.
 
     `numbers` and `cells` have node and cell numbers of each block. Unnamed boundaries are called periodic1,
-    periodic2 and so on; names in `taken` are left out.
+    periodic2 and so on, without the names in `taken`.
     """
     motions: list[Motion] = []
     by_motion: dict[tuple[int, str, str], list[tuple[NamedFaces, NamedFaces]]] = {}

@@ -19,8 +19,8 @@ class Member:
     """The grid lines of a block along the direction `axis` (0 is xi, 1 is eta), as a part of a family.
 
     A family contains all grid lines that continue each other from block to block. If `aligned`, line k
-    continues line k of the family's first block, or, if also `flipped`, its k-th line from the end. If not
-    `aligned`, only some of the lines continue lines of the first block.
+    continues line k of the family's first block; if also `flipped`, that block's k-th line from the end. If
+    not `aligned`, only some of the lines continue lines of the first block.
     """
 
     block: int

@@ -135,7 +135,7 @@ class SixFaces:
     def at(self, knots: list[Floats], places: list[Floats]) -> "SixFaces":
         """Return the faces interpolated from the parameters `knots` of nodes to new parameters `places`.
 
-        Both lists have an array for each direction, which increases from 0 to 1. Nodes of an edge stay on it.
+        Both lists have an array, increasing from 0 to 1, for each direction. Nodes of an edge stay on it.
         """
         made: dict[Side, Floats] = {}
         for side in FACES:

@@ -138,7 +138,7 @@ class QuadMesh:
 
     @property
     def tied(self) -> Bools:
-        """Whether each node (n,) on a periodic side is tied to a node on the opposite side, its partner."""
+        """Mask (n,) of nodes on periodic sides that are tied to a partner, a node on the opposite side."""
         tied = self.places.partner >= 0
         tied[self.places.partner[tied]] = True
         return tied

@@ -36,7 +36,7 @@ class Extreme:
 
 @dataclass(frozen=True)
 class Growth:
-    """Growth ratios along each direction; None if grid lines of this direction have a single edge."""
+    """Growth ratios along each direction; None for a direction whose grid lines have a single edge."""
 
     xi: Extreme | None
     eta: Extreme | None

@@ -147,7 +147,7 @@ class BladeSurface:
         return np.asarray(turned - mean - away * self.pitch)
 
     def lines(self, u: Floats) -> CubicTable:
-        """Return splines along the span at places `u` (m,): s, theta, h by the mean h of profiles."""
+        """Return splines along the span at places `u` (m,): s, theta, h over the mean h of the profiles."""
         values = np.stack([profile.at(u) for profile in self.profiles])
         values[..., 1] += self._turns[:, None]
         return CubicTable(values, self.knots)

@@ -63,7 +63,7 @@ def channel(walls: Sequence[DrawnEdge], name: str, notes: tuple[str, ...] = ()) 
 def four_edges(
     edges: Sequence[DrawnEdge], name: str, notes: tuple[str, ...] = ()
 ) -> Boundary | DomainShape | Outline:
-    """Return the domain of four edges, which are joined end to end from the first, which is south.
+    """Return the domain of four edges, joined end to end from the first edge, which is south.
 
     If opposite edges have equal numbers of points, at least three, the points become nodes. Raises
     InputError: edges that do not meet, or that cross; a point that repeats its neighbour.

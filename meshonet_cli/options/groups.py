@@ -21,7 +21,7 @@ def option_of(group: str) -> Callable[..., Any]:
     """Return a function that declares an option of the group `group`, as a default value or in `Annotated`.
 
     The function takes the names of the option, its ``default``, and the arguments ``metavar``, ``help``,
-    ``min`` and ``max`` of `typer.Option`. Without names, the name of the parameter determines it; without
+    ``min`` and ``max`` of `typer.Option`. Without names, the option is named after the parameter; without
     ``metavar``, the choices are shown. Help texts show defaults that are numbers or words.
     """
 

@@ -44,7 +44,7 @@ class StageLine:
     def text(self) -> str:
         """Return the text of the line: elapsed time, stage and progress.
 
-        In the first second, it is only the attribute `detail`. `detail` also replaces an unknown progress.
+        In the first second, the text is only the attribute `detail`, which later replaces unknown progress.
         """
         stage, now = self._stage, time.perf_counter()
         spent = now - self._begun

@@ -187,7 +187,7 @@ def attached_cells(
     """Return the number of cells in the layers and in the rows of cells to inlet and outlet.
 
     `counts` are the numbers of cells along the edges of each chord. `layers` replaces the number of layers.
-    `longest` has the least lengths of the rows, by the index of the loop: inlet or outlet.
+    `longest` has a length by the index of the loop (inlet or outlet); a shorter row counts as that long.
     """
     along = chords.along_loops(counts).tolist()
     total = along[BLADE] * (cascade.rows_of_layers if layers is None else layers)

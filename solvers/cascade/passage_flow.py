@@ -33,13 +33,13 @@ _LEAST = 1e-9  # of the slit: by how much the potential rises from point to poin
 
 @dataclass(frozen=True, eq=False)
 class PassageFlow:
-    """Potential flow past a cascade. Its potential G maps the blade to a slit; a second map makes it a strip.
+    """Potential flow past a cascade. Its potential G maps each blade to a slit.
 
     Parameters
     ----------
     half : half the length of the slit, h.
     around : (n,) increasing angles ν of points on the blade; the potential is G = h cos ν.
-    strip : (n,) positions σ of these points in the strip, infinite at the ends of the slit.
+    strip : (n,) positions σ of these points after a second map, to a strip; infinite at the ends of the slit.
     away : (n,) ζ - G at the points, where ζ is the coordinate of `Passage.zeta`.
     """
 

@@ -19,7 +19,7 @@ def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...
     """Return for each corner the weights (n, corners) of the wall nodes, and a shift (corners,) of phi.
 
     phi is the coordinate along the wall in the strip. Nodes moved by weight times shift make the first line
-    at each corner bisect its angle in the plane. `wall` (n,): nodes, counter-clockwise; `corners`: indices.
+    at each corner bisect the corner's angle. `wall` (n,): nodes, counter-clockwise; `corners`: indices.
     """
     n, step = len(wall), 2.0 * np.pi / len(wall)
     between = np.subtract.outer(corners, corners) % n

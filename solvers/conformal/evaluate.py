@@ -52,7 +52,7 @@ class StripGrid:
         return np.asarray(F + 1j * theta)
 
     def fill(self, lift: Lift, out: Floats, axis: Axis | None = None, shift: Shift | None = None) -> bool:
-        """Map the grid, except its walls, to the plane (`out`: (n + 1, nj, 2)); return whether it is finite.
+        """Map the grid, except its walls, to the plane (`out`: (n + 1, nj, 2)); return whether all is finite.
 
         `lift` is the conformal map from the strip to the plane. The last row repeats the first bitwise. With
         an `axis`, rows i and n - i are mirror images. `shift` is added to phi, the imaginary part of w.

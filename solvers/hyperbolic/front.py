@@ -74,7 +74,7 @@ class Front:
         return self._south[:-1] if self._closed else self._south
 
     def reach(self, levels: Floats) -> float:
-        """Return the least distance from the centre of the body to the last of m `levels` (2, m, n)."""
+        """Return the least distance from the body's centre to a node on the last of m `levels` (2, m, n)."""
         return float(np.hypot(*(levels[:, -1].T - self._middle).T).min())
 
     def nodes(self, levels: Floats) -> Floats:

@@ -53,8 +53,8 @@ def wall_sides(boundary: Boundary) -> list[Side]:
     """Return the sides of a four-sided boundary that get layers if the request names no walls.
 
     These are south and north, unless all patches on the side have names of other boundaries, such as
-    ``inlet``; and west and east, if all patches on the side are walls. If there are none, all sides with a
-    patch that may be a wall get layers. Raises InputError if no side may be a wall.
+    ``inlet``; and west and east, if all patches on the side are walls. If no such side exists, all sides
+    with a patch that may be a wall get layers. Raises InputError if no side may be a wall.
     """
     patches = {side: [p for p in boundary.patches if p.side == side] for side in SIDES}
     possible = [side for side in SIDES if any(patch.may_be_wall for patch in patches[side])]

@@ -38,7 +38,7 @@ class ChannelLines:
     def links(self, u: Floats, start: Floats, pairs: Indices, weight: float) -> PlaceLinks:
         """Return conditions on `u` (k,): lines should not lean more than with the places `start` (k,).
 
-        Places run from 0 to 1 around a blade. Lean is the tangent of the angle between a line and the normal.
+        Places run from 0 to 1 around a blade. Lean is the tangent of a line's angle to the layers' normal.
         Its increase is linearised at `u` and multiplied by `weight`. Each line joins two nodes, with indices
         `pairs` (p, 2).
         """

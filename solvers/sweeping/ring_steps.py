@@ -14,7 +14,7 @@ _CLOSE = 1e-9  # of the length, to which steps fill it
 
 
 def ring_steps(lengths: Floats, sizes: Floats, rows: int, first: float | None) -> Floats:
-    """Return the steps (k, rows) on k lines of `lengths` (k,); `sizes` (k,) are the cell lengths after them.
+    """Return the steps (k, rows) on k lines of `lengths` (k,), each before a cell of the length `sizes` (k,).
 
     Steps begin with `first`; if it is None, all ratios along a line are equal. If a ratio above `LARGEST`
     were needed, steps do not fill the length (see `largest_ratio`).
@@ -52,7 +52,7 @@ def fewest_rows(lengths: Floats, sizes: Floats, first: float | None, growth: flo
 def largest_ratio(lengths: Floats, sizes: Floats, steps: Floats) -> float:
     """Return the largest ratio of neighbouring cell lengths on k lines; infinite if cells do not fill a line.
 
-    The lines have `lengths` (k,) and cells `steps` (k, rows). `sizes` (k,) are the cells next to the lines.
+    The lines have `lengths` (k,) and cells `steps` (k, rows); each ends at a cell of the length `sizes` (k,).
     """
     if np.abs(steps.sum(axis=1) - lengths).max() > _CLOSE * lengths.max():
         return math.inf

@@ -15,7 +15,7 @@ _LINES = ("symmetry", "other")
 
 @dataclass(frozen=True)
 class Stretch:
-    """A part of a loop that has layers. At both its ends is a corner at which one cell meets.
+    """A part of a loop that has layers. Each of its ends is a corner with a single cell.
 
     Parameters
     ----------

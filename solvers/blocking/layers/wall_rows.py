@@ -37,8 +37,8 @@ class WallRows:
     Parameters
     ----------
     loops : for each row, the index of the loop along which it goes.
-    across : (b, 2) index of the row that a block's lines from south to north cross, and those from west to
-        east; -1: no row. Refinement does not change it.
+    across : (b, 2) index of the row that a block's lines from south to north cross, then of the row that its
+        lines from west to east cross; -1: no row. Refinement does not change these indices.
     back : (b, 2) whether these lines lead from the outer edge of the row to the wall.
     """
 

@@ -97,7 +97,7 @@ class MGNet(Architecture):
 
 @dataclass(frozen=True)
 class MeshNet(MGNet):
-    """MGNet with a further term in its loss, which compares with the nodes of a coarse solved grid.
+    """MGNet with a further term in its loss: the difference from the nodes of a coarse solved grid.
 
     Chen et al., Developing a novel structured mesh generation method based on deep neural networks, Physics
     of Fluids 35 (2023) 097151.

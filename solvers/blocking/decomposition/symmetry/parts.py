@@ -63,9 +63,9 @@ class DomainPart:
 
 
 def spans_between(loop: Loop) -> list[Span]:
-    """Return the spans (parts) of a loop between successive corners at which a single cell meets.
+    """Return the spans (parts) of a loop between successive corners with a single cell.
 
-    At corners within a span, two cells meet.
+    Corners within a span have two cells.
     """
     corners = zip(loop.corner_arcs.tolist(), loop.corner_cells.tolist(), strict=True)
     turns = [(arc, cells) for arc, cells in corners if cells != 2]
