@@ -158,8 +158,7 @@ def wakes() -> str:
 WAKES = """
 ## C grids: no model
 
-No network was trained on C grids. Use `infer --topology c` without `--model`, which marches C grids from the
-wall.
+No network was trained on C grids. March them from the wall: use `infer --topology c` without `--model`.
 
 The table gives averages over six C grids of 201 x 65 nodes: around three airfoils, each with a far field at 5
 and at 15 chords. `quad-general` is the network for four-sided domains.

@@ -189,7 +189,7 @@ compares expected and true errors of four networks, mostly on kinds of shapes th
 kinds are those of the [open comparison](yardstick.md).
 
 The network `meshonet` of [the paper](paper/index.md) was trained on 30 arches. It was tested on 40 arches, 40
-hexagons, 40 semicircles and 80 four-sided domains. Its boundary nodes were replaced by the given ones;
+hexagons, 40 semicircles and 80 four-sided domains. The given boundary nodes replace the predicted ones;
 therefore many cells are folded.
 """
 COLUMNS = (
@@ -212,8 +212,8 @@ dotted line is the threshold of 0.03.
 - With `--polish auto`, all 480 grids of `quad-general`, `hole-o` and `airfoil-o` have low expected errors and
   no folded cells. Their largest true error is 0.057.
 - A low expected error does not exclude folded cells: without polish, 15 of 456 grids with a low expected
-  error have some. `infer --fallback` therefore replaces a grid by that of the solver in two cases: its
-  expected error is high, or it has folded cells.
+  error have some. `infer --fallback` therefore uses the solver's grid if the network's grid has a high
+  expected error or folded cells.
 """
 
 if __name__ == "__main__":

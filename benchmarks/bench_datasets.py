@@ -43,9 +43,9 @@ HEAD = """# Datasets of a million grids
 
 <!-- made by python benchmarks/bench_datasets.py --page docs/benchmarks/datasets.md -->
 
-Read this page before you generate a dataset of very many grids. It gives the memory and the time of such a
-batch, and the time to read a sample. Times are wall-clock times of one process. Other programs ran during
-some measurements.
+Read this page before you generate a dataset of very many grids. It gives the memory and the time to generate
+a million grids, and the time to read a sample. Times are wall-clock times of one process. Other programs ran
+during some measurements.
 
 A large dataset consists of files called *parts* and of an *index file*, which presents all parts as one HDF5
 file ([large datasets](../guide/datasets.md)). Each grid here has only 5 x 4 nodes and is made without a

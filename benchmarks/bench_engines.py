@@ -75,7 +75,7 @@ TAIL = """
 
 - **Speed**: on one machine use `--jobs`. With two workers the speed-up is 2.02 with `--jobs 2`, 1.80 with
   Dask and 1.83 with MPI.
-- **A worker of `--jobs` or of Dask dies**: nothing is lost. Another worker generates its part again.
+- **A worker of `--jobs` or of Dask dies**: nothing is lost. Another worker repeats the unfinished part.
 - **Another process dies** (the main process, the scheduler of Dask or an MPI process): the command ends, and
   the parts written until then remain. Repeat the command with `--skip-existing`.
 """

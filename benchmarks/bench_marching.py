@@ -61,8 +61,8 @@ CONCLUSIONS = """
 
 - **Valid cells**: no volume has folded cells. First-cell heights are exact to 1e-9.
 - **Time**: the blended wing body, with 1.1 million nodes, takes 1.04 s.
-- **Growth**: from spheres and deformed spheres with a prescribed growth of 0.164, the largest growth is 0.17
-  to 0.21. At the sharp edges of the blended wing body it is 0.81, where 0.253 is prescribed.
+- **Growth**: around spheres and deformed spheres with a prescribed growth of 0.164, the largest growth is
+  0.17 to 0.21. At the sharp edges of the blended wing body it is 0.81, with a prescribed growth of 0.253.
 - **Angles**: the mean angle off the normal is at most 2.7 degrees, except at concave corners and on the
   sphere with 98 nodes.
 """

@@ -63,7 +63,7 @@ NETWORKS = """## A network: 3DMeshNet
 Use `variational`, not 3DMeshNet: the network takes far more CPU time and makes fewer valid grids.
 
 A 3DMeshNet (`train --model meshnet`) is trained for one domain, here for each of the first {count} domains
-above, with {epochs} steps (default 15,000). The training is part of the CPU time.
+of *Quality*, with {epochs} steps (default 15,000). The training is part of the CPU time.
 
 - *3DMeshNet*: the given boundary nodes replace the predicted ones (`infer --answer pasted`), whose largest
   error is {off} % of the domain size (median over the domains).

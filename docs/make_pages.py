@@ -28,8 +28,8 @@ Look here for the training parameters of the models (neural networks that genera
 meshonet. [Neural operators](../theory/operators.md) helps to choose a model, and [held-out
 errors](../benchmarks/models.md) gives the accuracy of each. `meshonet models NAME` prints the same data.
 
-Each model is a safetensors file in `solvers/neural/pretrained/`, whose metadata contain these data. `make
-train` repeats the training.
+Each model is a safetensors file in `solvers/neural/pretrained/`. The metadata of the file contain these data.
+`make train` repeats the training.
 
 | training parameter | meaning |
 | --- | --- |

@@ -72,9 +72,10 @@ of the MeshONet paper](paper/index.md) gives errors after longer training.
 
        python benchmarks/yardstick shapes build/yardstick --seed 1
 
-   Each kind is a file `build/yardstick/KIND.h5` with the arrays `south`, `north` (n, ni, 2), `west`, `east`
-   (n, nj, 2) and `names`. For a body, south is the body, clockwise, and north is the circle. West and east are
-   the two sides of one cut from the body to the circle; your program may move the nodes of this cut.
+   Each kind is a file `build/yardstick/KIND.h5`. For n shapes with ni x nj nodes it has the arrays `south`,
+   `north` (n, ni, 2), `west`, `east` (n, nj, 2) and `names`. For a body, south is the body, clockwise, and
+   north is the circle. West and east are the two sides of one cut from the body to the circle; your program
+   may move the nodes of this cut.
 
    With the option `--plot3d` each kind is also a folder `KIND` with a 2D ASCII Plot3D file for each shape.
    The four blocks of the file are the sides.

@@ -21,7 +21,7 @@ def deform(
     wall: list[str] | None = _option(
         metavar="[NAME=]FILE", help="New shape of a wall: a file with an outline, a designation such as "
         "naca:2412, or a grid with equally many nodes on its wall. NAME, a wall or another named part of the "
-        "boundary, may be omitted if the grid has one wall. Repeatable.",
+        "boundary, may be omitted if GRID has one wall. Repeatable.",
     ),
     rotate: list[str] | None = _option(
         metavar="NAME=DEGREES@X,Y", help="Rotate the wall NAME counter-clockwise by DEGREES about the point "

@@ -46,8 +46,8 @@ def quality(
     ),
     reynolds: float | None = _check(
         metavar="RE", help="Reynolds number, based on --length. The report then gives y+ of the first cells "
-        "at each wall, as on a turbulent flat plate. --fail-on 'y_plus>2' tests the largest. [default: no "
-        "y+]",
+        "at each wall, as on a turbulent flat plate. --fail-on 'y_plus>2' tests the largest y+. [default: "
+        "no y+]",
     ),
     length: float | None = _check(
         metavar="L", help="Reference length of --reynolds, in the unit of the grid. [default: 1]",

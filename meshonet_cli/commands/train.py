@@ -25,9 +25,9 @@ class TrainOptions:
 
     model: str | None = _option(
         metavar="NAME", help="Architecture. strip: operator for airfoils. quad: operator for four-sided "
-        "domains. meshonet: network of the MeshONet paper. meshonet-hard: with exact boundary nodes. "
-        "Baselines: deeponet, pod-deeponet, fno1d, fno2d, wno, kno, lno, mionet. Physics-informed: mgnet, "
-        "meshnet. [default: strip for datasets of boundaries, else meshonet]",
+        "domains. meshonet: network of the MeshONet paper. meshonet-hard: variant with exact boundary "
+        "nodes. Baselines: deeponet, pod-deeponet, fno1d, fno2d, wno, kno, lno, mionet. Physics-informed: "
+        "mgnet, meshnet. [default: strip for datasets of boundaries, else meshonet]",
     )
     split: str | None = _option(
         metavar="HOW|FILE", help="Choice of the shapes reserved for tests. interpolation: from the middle of "

@@ -25,16 +25,16 @@ FirstCell = Annotated[str | None, _option(
     "largest extent of another body. WALL=H,WALL=H applies to the named walls only. H applies to the body; "
     "to south, north and sides named wall of a four-sided domain; to the holes of a multi-block grid. If "
     "there are no holes, H applies to all sides, provided that one is named inlet, outlet, axis, symmetry or "
-    "farfield. It never applies to sides with these names. [default: no layers]",
+    "farfield. H never applies to sides with these names. [default: no layers]",
 )]
 YPlus = Annotated[float | None, _option(
-    metavar="Y", help="y+ at the height of the first cell, instead of --first-cell; at the cell centre it is "
-    "half of this. The height follows from --reynolds for a turbulent flat plate.",
+    metavar="Y", help="y+ at the height of the first cell, instead of --first-cell; y+ at the cell "
+    "centre is half as large. The height follows from --reynolds for a turbulent flat plate.",
 )]
 YPlusAtWalls = Annotated[str | None, _option(
-    metavar="Y|WALL=Y,...", help="y+ at the height of the first cell, instead of --first-cell; at the cell "
-    "centre it is half of this. The height follows from --reynolds for a turbulent flat plate. WALL=Y,WALL=Y "
-    "applies to the named walls only.",
+    metavar="Y|WALL=Y,...", help="y+ at the height of the first cell, instead of --first-cell; y+ at the "
+    "cell centre is half as large. The height follows from --reynolds for a turbulent flat plate. "
+    "WALL=Y,WALL=Y applies to the named walls only.",
 )]
 Length = Annotated[float | None, _option(
     metavar="L", help="Reference length of --reynolds, in the unit of --first-cell. [default: chord or "

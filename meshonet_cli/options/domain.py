@@ -25,8 +25,8 @@ class BlockOptions:
     """Options of multi-block grids; giving any of them, except --assemble, asks for such a grid."""
 
     assemble: bool = _option(
-        default=False, help="Combine all inputs into one domain. If one input encloses the others, they are "
-        "inside it; otherwise all are bodies in a common far field. Each wall is named after its file.",
+        default=False, help="Combine all inputs into one domain. If one input encloses the others, it is the "
+        "outer boundary; otherwise all are bodies in a common far field. Each wall is named after its file.",
     )
     cells: int | None = _option(
         metavar="N", help="Approximate number of cells in all blocks together. [default: 2500; 20000 with "
