@@ -77,8 +77,8 @@ def nearest_whole(values: Floats) -> Floats:
 def made_unlike(costs: Floats) -> Floats:
     """Return `costs` (..., n), slightly changed so that sums of different costs are hardly ever equal.
 
-    A linear programme then has a single solution. Changes differ by index, and are far below real
-    differences.
+    A linear programme then has a single solution. Changes differ by index, and are far smaller than
+    real differences of costs.
     """
     digits = np.mod(1e3 * np.sqrt(np.arange(costs.size) + 0.618), 1.0)
     return costs + _NOISE * np.abs(costs) * digits.reshape(costs.shape)

@@ -62,7 +62,7 @@ class CellSheet:
 def layers(grid: Grid, at: Slice, values: list[Floats] | None) -> list[CellSheet]:
     """Return the grid surface that the index `at` defines in each block that has this index.
 
-    Its values are from the adjacent cells. Raises InputError if no block has the index.
+    The values of the surface are from the adjacent cells. Raises InputError if no block has the index.
     """
     index = at.index or 0
     sheets = []

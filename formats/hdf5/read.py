@@ -73,7 +73,7 @@ def _raise(error: Exception) -> NoReturn:
 
 
 def kept_of(parts: Sequence[Part], split: str) -> Sequence[int]:
-    """Return the indices, counted through all parts, of the samples of a split; all if it is empty."""
+    """Return the indices, counted through all parts, of the samples of `split`; all if `split` is ""."""
     if not split:
         return range(parts[-1].stop)
     kept: list[int] = []

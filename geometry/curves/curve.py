@@ -118,7 +118,7 @@ class Curve:
         return i, t
 
     def at(self, s: Floats) -> Floats:
-        """Return points (m, 2) at arc lengths `s` (m,), clipped if open; at `knots` bitwise as given."""
+        """Return points (m, 2) at arc lengths `s` (m,), clipped if the curve is open; exact at `knots`."""
         i, t = self._locate(s)
         points = np.empty((len(t), 2))
         curve_points(self._cubic, i, t, self.points[0 if self.closed else -1], points)

@@ -23,9 +23,9 @@ def spline_slopes(
     """Return the slopes (intervals, 2) of a curve at the start and at the end of each interval.
 
     Between `corners` (indices of points) the curve is a cubic spline, which is limited to avoid overshoots
-    (see `limited`). Beside a corner it is a parabola. Intervals of the curve in
-    the mask `tangent` (n,) are straight lines, to which the splines beside them are tangent. A closed curve
-    does not repeat its first point.
+    (see `limited`). Next to a corner it is a parabola. Intervals of the curve in the mask `tangent` (n,) are
+    straight lines, to which the neighbouring splines are tangent. A closed curve does not repeat its first
+    point.
     """
     if tangent is not None and tangent.any():
         return _beside_lines(points, corners, tangent)

@@ -133,7 +133,7 @@ def across_wake(grid: Grid) -> Floats:
 
 
 def strips(nodes: Floats, more: int) -> Iterator[tuple[int, Floats]]:
-    """Yield each part of `nodes` (ni, nj, 2) after its first index i; successive parts share `more` lines."""
+    """Yield first index i and nodes of parts of `nodes` (ni, nj, 2); consecutive parts share `more` lines."""
     for i in range(0, max(len(nodes) - more, 0), ROWS):
         yield i, nodes[i : i + ROWS + more]
 

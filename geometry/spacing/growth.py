@@ -21,8 +21,8 @@ def check_growth(growth: float | None, most: float = LARGEST) -> None:
 def growth_ratio(first: float, length: float, cells: int) -> float:
     """Return the growth ratio g >= 1 with which `cells` cells, the first of size `first`, fill `length`.
 
-    It satisfies first (gⁿ - 1)/(g - 1) = length. Raises InputError: equal cells are longer than `length`; g
-    is above `LARGEST`.
+    It satisfies first (gⁿ - 1)/(g - 1) = length. Raises InputError: `cells` cells of size `first` exceed
+    `length`; g is above `LARGEST`.
 
     >>> growth_ratio(1.0, 7.0, 3)
     2.0
@@ -74,8 +74,8 @@ def growing_steps(first: float, length: float, cells: int, constant: int = 1) ->
 def growth_rate(place: Floats, first: float, length: float, rate: float) -> float:
     """Return the rate g for which cells of sizes first · exp(g · place) fill `length`.
 
-    `place` (n,) rises from 0. Newton's method starts at `rate`, which must be at least g, as the sum is
-    convex in g.
+    `place` (n,) rises from 0. Newton's method starts at `rate`, which must be at least g, as the sum of
+    the sizes is convex in g.
     """
     for _ in range(100):
         sizes = first * exp(rate * place)

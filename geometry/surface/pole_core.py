@@ -43,9 +43,9 @@ class PoleCore:
 def core_of(fan: Floats, quarters: int, most: int, *, even: bool = False) -> PoleCore:
     """Return the core that replaces the first columns of a `fan` (m + 1, n, 3), a patch with a pole at j = 0.
 
-    The core and its rings are rounded, as marching requires. An `even` core has no kinks. Across the kinks of
-    other cores, cell sizes differ by a factor of up to 2. `quarters` is the angle of the fan in right angles.
-    A closed fan repeats its first curve, and m is even. At most `most` columns are replaced.
+    The core and the rows around it are rounded, as marching requires. An `even` core has no kinks. Across the
+    kinks of other cores, cell sizes differ by a factor of up to 2. `quarters` is the fan's angle in right
+    angles. A closed fan ends with its first curve, and m is even. At most `most` columns are replaced.
     """
     m = len(fan) - 1
     steps = norms(np.diff(fan, axis=1)).mean(axis=0)

@@ -137,8 +137,8 @@ def picard(
 ) -> tuple[Complexes, list[float]]:
     """Return the modes of F after at most `steps` Picard steps, and the largest change of F in each step.
 
-    A grid in the strip is w(theta, eta) = psi + i phi; F = w - i theta has the period 2 pi in theta. It
-    solves::
+    A grid in the strip is w(theta, eta) = psi + i phi; F = w - i theta has the period 2 pi in theta. The
+    grid solves::
 
         alpha w_tt - 2 beta w_te + gamma w_ee = 0
         alpha = |w_e|^2,  beta = Re(conj(w_t) w_e),  gamma = |w_t|^2

@@ -44,13 +44,13 @@ class Factors:
 
 @dataclass(frozen=True, eq=False)
 class Controls:
-    """Control functions φ and ψ, stored as logarithms l of the ratios of neighbouring steps.
+    """Control functions φ and ψ, stored as logarithms l of the ratios of neighbouring edge lengths.
 
-    The equations are α (x_ξξ + φ x_ξ) - 2β x_ξη + γ (x_ηη + ψ x_η) = 0. On a level with the step h, φ =
+    The equations are α (x_ξξ + φ x_ξ) - 2β x_ξη + γ (x_ηη + ψ x_η) = 0. On a level with step h in ξ, φ =
     -(2/h) tanh(h l/2), which is exact for geometric growth (``stencil.h``).
     """
 
-    phi: Factors  # logarithm of the ratio of neighbouring steps along ξ and along η
+    phi: Factors  # logarithm of the ratio of neighbouring edge lengths along ξ and along η
     psi: Factors
 
     def scaled(self, part: float) -> Controls:

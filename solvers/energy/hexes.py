@@ -47,7 +47,7 @@ class Slides:
     def kept(self, before: Floats, after: Floats, moves: Bools) -> Floats:
         """Return the displaced nodes `after` (n, 3), with sliding nodes moved back to their planes and lines.
 
-        These pass through the positions `before`. Nodes outside the mask `moves` are not displaced.
+        Planes and lines pass through the nodes `before`. Nodes outside the mask `moves` are not displaced.
         """
         nodes, at = after.copy(), self.nodes
         nodes[at] = before[at] + (self.projections * (after[at] - before[at])[:, None]).sum(axis=2)

@@ -42,7 +42,7 @@ class GrowthLimit:
 
     @classmethod
     def at(cls, growth: Floats, limit: float | Floats, change: float = CHANGE) -> Self:
-        """Return the term for initial logarithms `growth` (..., k), which become ρ0, clipped to ±`limit`."""
+        """Return the term in which ρ0 are the logarithms `growth` (..., k), clipped to ±`limit`."""
         return cls(limit, np.clip(growth, -limit, limit), change)
 
     def values(self, growth: Floats, weight: float) -> Floats:

@@ -54,7 +54,7 @@ class ChannelLines:
         return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
     def weights(self, pairs: Floats) -> Floats:
-        """Return weights (p,) of lines: `slant` squared at the first end; `pairs` (p, 2) are u of both."""
+        """Return weights (p,) of lines: `slant`² at their first ends; `pairs` (p, 2) are u of their ends."""
         return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
 
     def aside(self, pairs: Floats) -> Floats:

@@ -114,7 +114,7 @@ class SectionPlane:
 
     @property
     def corners(self) -> Floats:
-        """Places u (c,), from 0 to 1 around the blade, of its corners."""
+        """Places u (c,) of the blade's corners, from 0 to 1 around the blade."""
         return self.places[list(self.cascade.blade.corners)]
 
     def from_corners(self, arcs: Floats) -> Floats:

@@ -156,8 +156,8 @@ def upright(
 ) -> tuple[Floats, Floats]:  # fmt: skip
     """Return places (k,) of nodes around the blade, at hub and casing, changed so that lines lean less.
 
-    Lines cross the channel to the next blade; lean is their angle to the normal. Nodes stay between the edges
-    of the blade, and do not move if lines in the half of the span at a free end lean by at most `LEAN`.
+    Lines cross the channel to the next blade; lean is their angle to the normal. Nodes stay on their side of
+    the blade, and do not move if lines in the half of the span at a free end lean by at most `LEAN`.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ FEWEST = 3  # layers of nodes: two cells
 
 @dataclass(frozen=True)
 class VolumeMarch:
-    """Settings of a march from a surface; lengths are in its unit."""
+    """Settings of a march from a surface; lengths are in the unit of the surface."""
 
     first_cell: float  # height of the cells at the wall
     layers: int | None = None  # nodes along each line, with the wall node; None: as `growth` requires

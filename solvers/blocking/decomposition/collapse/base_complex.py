@@ -43,7 +43,7 @@ class BaseComplex:
     def sides(self) -> tuple[Indices, Indices, Indices]:
         """Edges along the sides of the blocks: south, north, west, east of each block.
 
-        The first array (k,) has, side by side, the edge from each node to the next, and -1 at the end of a
+        The first array (k,) has, side after side, the edge from each node to the next, and -1 at the end of a
         side. The second (4 b,) has the start of each side in the first array, the third (4 b,) its chord.
         """
         lines = [line for block in self.blocks for line in (block[:, 0], block[:, -1], block[0], block[-1])]

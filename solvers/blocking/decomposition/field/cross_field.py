@@ -27,7 +27,7 @@ _DIFFUSION = 0.003
 
 @dataclass(frozen=True, eq=False)
 class CrossField:
-    """Four directions at right angles (a cross) at each point of a surface, and the cells at each vertex."""
+    """Four directions at right angles (a cross) at each point of a surface; cell counts at vertices."""
 
     surface: Triangulation
     walls: WallDirections

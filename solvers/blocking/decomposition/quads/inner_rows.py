@@ -107,7 +107,7 @@ def _left_of(
 
 
 def corner_row(mesh: QuadMesh, corner: int, farthest: int) -> QuadMesh | None:
-    """Return the mesh with a row of quads around a corner at which a single quad meets; None if impossible.
+    """Return the mesh with a row of quads around a corner of only one quad; None if impossible.
 
     The row is `farthest` quads away from the corner, or fewer if irregular nodes are in the way.
     """

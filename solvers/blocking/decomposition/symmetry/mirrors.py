@@ -25,7 +25,7 @@ _STEPS = 8  # of Newton's method for the nearest point of a curve
 class Mirror:
     """A mirror line through `centre` (2,) along the unit vector `along` (2,).
 
-    It maps boundary loop k to loop `loops[k]`, and the arc length s on it to `sums[k]` - s.
+    It maps boundary loop k to loop `loops[k]`, and the arc length s on loop k to `sums[k]` - s.
     """
 
     centre: Floats
