@@ -46,7 +46,7 @@ class Walk:
         self._example = ""
 
     def files(self) -> Iterator[str | InputError]:
-        """Yield files, and errors for invalid inputs; an error at the end says that no file was picked."""
+        """Yield files, and errors for invalid inputs; if no file is picked, an error at the end says so."""
         yield from self._of(self._inputs.words)
         if self._patterns and not self._taken:
             pattern = " or ".join(map(printable, self._inputs.pick))

@@ -55,7 +55,7 @@ def resample_edges(
     """Return the four `edges` of a block, resampled to `ni` nodes along xi and `nj` along eta.
 
     The wake is the first and the last `wake` cells of the south edge. The nodes of these two parts stay
-    equal, and their fraction of the edge's cells stays the same. `closed` says whether south and north are
+    equal, and the wake keeps its fraction of the edge's cells. `closed` says whether south and north are
     closed.
 
     Raises InputError: too few nodes for a closed edge, or for the wall between the two sides of a wake.

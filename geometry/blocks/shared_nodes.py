@@ -43,7 +43,7 @@ def shared_nodes(
 def numbered(
     counts: Sequence[tuple[int, ...]], order: Literal["C", "F"] = "C"
 ) -> tuple[Indices, list[Indices]]:
-    """Return the number of each block's first node and then the total; also each block's node numbers.
+    """Return the first node number of each block, then the total of nodes; also each block's node numbers.
 
     Nodes are numbered block after block. Joined nodes have separate numbers.
     """

@@ -207,5 +207,5 @@ def arc_lengths(z: Complexes) -> Floats:
 
 
 def at_lengths(z: Complexes, length: Floats, at: Floats) -> Complexes:
-    """Return points (m,) at arc lengths `at` of a polygon; its points `z` (n,) have arc lengths `length`."""
+    """Return points (m,) at arc lengths `at` (m,) of a polygon; points `z` (n,) are at `length` (n,)."""
     return np.interp(at, length, z.real) + 1j * np.interp(at, length, z.imag)

@@ -19,8 +19,8 @@ def split(
 
     The test members have the middle values of the parameter for ``interpolation``, the highest values for
     ``extrapolation`` (the lowest with `low`), and are drawn at random for ``random``. `share` is the fraction
-    of test members: at least one, and at least two are left for training. Raises InputError: an unknown way;
-    fewer than three members; equal parameters, unless the way is random.
+    of test members; at least one member is for tests, and at least two are for training. Raises InputError:
+    an unknown way; fewer than three members; equal parameters, unless the way is random.
 
     >>> split([0.3, 0.1, 0.2], "extrapolation")
     ('test', 'train', 'train')

@@ -24,7 +24,7 @@ def farthest(wall: Complexes) -> tuple[int, int]:
 
 
 def handedness(wall: Complexes, far: Complexes) -> tuple[int, Axis]:
-    """Return a sign (1 or -1) that tells a body from its mirror image, and the axis of the mirror.
+    """Return a sign (1, -1 or 0) that tells a body from its mirror image, and the axis of the mirror.
 
     The body is given by two curves, `wall` (n,) and `far` (n,). The sign is 0 if both are symmetric. The axis
     is a point and the square of a direction. It runs from the first node of `wall` to the middle between the

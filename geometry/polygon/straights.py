@@ -22,8 +22,8 @@ def find_kinks(points: Floats, *, few: int = FEW) -> Indices:
 
     A turn of more than 2 degrees is a kink if it is 20 times as large as both neighbouring turns. In a
     polygon of at most `few` points, two successive turns in opposite directions may both be at least half of
-    the largest turn. A smooth curve through these points would be a wave. Then all turns of more than 2
-    degrees are kinks.
+    the largest turn. In this case all turns of more than 2 degrees are kinks, because a smooth curve through
+    these points would be a wave.
     """
     turn = turning(points)
     size = np.abs(turn)

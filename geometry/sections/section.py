@@ -95,7 +95,7 @@ class Section:
 
 
 class Fade(NamedTuple):
-    """Weight (n,) of each node: with 1 it has twist and chord of the section, with 0 no twist and `chord`."""
+    """Weight (n,) of each node: 1 gives the node twist and chord of the section, 0 no twist and `chord`."""
 
     weight: Floats
     chord: float

@@ -52,7 +52,7 @@ class Sampling:
     wake : float, optional
         Length of the wake of a C grid in chords; None: the far-field distance.
     wake_nodes : int, optional
-        Number of nodes along the wake with the trailing edge. None: the cell length there determines it.
+        Number of nodes along the wake with the trailing edge. None: the cell length at this edge decides.
     base_nodes : int, optional
         Number of nodes on a blunt base, including both corners; odd for an O grid. None: as its width needs.
     base : float, optional

@@ -53,7 +53,7 @@ def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
 
 
 def edges_in(nodes: Floats, sides: Indices, plane: Plane, slack: float) -> Indices:
-    """Return a mask of the `sides` (k, 4) with the open edge in a plane, up to `slack`, but not the quad."""
+    """Return whether the open edge, but not the whole quad, of each of `sides` (k, 4) is near a plane."""
     near = np.abs(nodes[sides, plane.axis] - plane.value) <= slack
     return np.asarray(near[:, :2].all(axis=1) & ~near[:, 2:].all(axis=1))
 

@@ -183,7 +183,7 @@ class BodyEnd:
         """Return the end of the grid next to the first or the last wing.
 
         `sides` has, for several levels, the wing's nodes that face this end; the body is the first level.
-        Their coordinate s is measured from the tip of nose or tail.
+        The nodes' coordinate s is measured from the tip of nose or tail.
         """
         nodes, cells = sides[0]
         way, last = min((float(nodes[k, 0]), float(cells[k])) for k in (0, -1))

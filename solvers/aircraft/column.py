@@ -131,7 +131,7 @@ class ColumnLevel:
         return replace(self, crown=zeta + 0.5 * (fin.levels[-1].hole.zeta - zeta))
 
     def beside_wing(self, wing: ColumnLevel, side: Side) -> ColumnLevel:
-        """Return this fin's column; below it, theta is nearly as on the given `side` of the column `wing`."""
+        """Return this fin's column with theta below the fin nearly as on `side` of the column `wing`."""
         own, others = self.low, side[0][: len(self.low), 1]
         keel = self.zeta + _FOLLOWING * (wing.zeta - self.zeta)
         return replace(self, below=_followed(own, others), keel=keel)

@@ -39,7 +39,7 @@ def section_loft(stack: Stack, unit: Floats) -> Loft:
 
 
 def fin_loft(fin: Fin, unit: Floats) -> Loft:
-    """Return the spanwise lines of the half z >= 0 of a fin with its span along y; nose first, edge last.
+    """Return spanwise lines of the half z >= 0 of a fin with its span along y, from nose to trailing edge.
 
     `unit` (sections, n, 2) are nodes around its sections at unit chord.
     """

@@ -103,8 +103,8 @@ class Passage:
         """Return the domain of the blocks between the blade, the inlet and the outlet.
 
         Its loops are the blade (or its layers), one rectangle upstream, one downstream, and one around all.
-        The blocks end at a side of the rectangles. This side of the upstream rectangle starts at `inlet`, and
-        of the downstream rectangle ends at `outlet`: distances from the centre along the pitch, in pitches.
+        The blocks end at one side of each rectangle. Along the pitch, in pitches from the centre, this side
+        extends from `inlet` - 1 to `inlet` upstream, and from `outlet` - 1 to `outlet` downstream.
         """
         pitch = abs(self.period)
         x, far = (self.inlet, self.outlet), (self.inlet - pitch, self.outlet + pitch)

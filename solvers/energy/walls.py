@@ -114,7 +114,7 @@ def _spread(arc: Floats, chain: Indices, length: float, ends: bool) -> None:
 
 @lru_cache(maxsize=256)
 def turned(loop: Loop) -> Floats:
-    """Return the accumulated absolute turning angle (n + 1,) of a closed curve in radians, without corners.
+    """Return the absolute turning angle (n + 1,), in radians, accumulated along a loop; corners do not count.
 
     Jumps of the tangent at points that are not corners are spread over both adjacent intervals.
     """

@@ -25,9 +25,9 @@ def wall_facts(grid: Grid) -> tuple[str, ...]:
 
 
 def growth_note(grid: Grid, limit: float, run: Lines | None = None) -> tuple[str, ...]:
-    """Return a note with the greatest growth ratio along grid lines and its node, if it exceeds `limit`.
+    """Return a note with the greatest growth ratio along grid lines, and its node, if above `limit`.
 
-    If that grid line does not start at a wall, the note also has the greatest ratio along lines from walls.
+    If this ratio is not on a line from a wall, the note also has the greatest ratio along lines from walls.
     `run` has the growth ratios of a multi-block grid; None computes them.
     """
     ratios, leaving = _growth(grid, run)

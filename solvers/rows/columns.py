@@ -46,7 +46,7 @@ def respaced_columns(values: Floats, space: Floats, first: float) -> Floats:
 def resampled(values: Floats, steps: Floats, new: Floats) -> Floats:
     """Return `values` (k, m, 2) at the nodes of k lines, interpolated to new nodes.
 
-    `steps` and `new` (k, m - 1) are the cell lengths between given and between new nodes, with equal sums.
+    `steps` (k, m - 1) are the lengths of the given cells, `new` (k, m - 1) of the new cells; sums are equal.
     """
     arcs = arcs_of(steps)
     return sampled(values, arcs, arcs_of(new))

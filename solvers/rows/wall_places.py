@@ -25,9 +25,9 @@ def even_wall_places(
     Parameters
     ----------
     corners : (c,) places of nodes that stay.
-    pairs : (p, 2) nodes on both sides that are joined by lines across the channel.
-    lines : mean lines across the channel; lines between nodes should not lean from them more than before.
-    opposite : whether each node at u keeps a node at 1 - u opposite; `lines` then have no effect.
+    pairs : (p, 2) a node of the upper and a node of the lower side, joined by a line across the channel.
+    lines : mean lines across the channel; lines of pairs should not lean from these more than before.
+    opposite : whether the node opposite to each node at u stays at 1 - u; `lines` then have no effect.
     """
     limit = MARGIN * math.log(growth)
     lead = int(np.abs(wrapped(places)).argmin())

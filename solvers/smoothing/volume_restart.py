@@ -14,7 +14,7 @@ _MOST, _SMALL = 500, 1e-8  # largest number of iterations, and the relative resi
 def harmonic(mesh: HexMesh, moves: Bools) -> Floats:
     """Return the nodes (n, 3) of a mesh; nodes in the mask `moves` (n,) go to the mean of their neighbours.
 
-    Their coordinates thus satisfy Laplace's equation on the graph of edges. All other nodes stay.
+    Thus coordinates of moved nodes satisfy Laplace's equation on the graph of edges. Other nodes stay.
     """
     edges = _edges(mesh)
     start = mesh.nodes.copy()

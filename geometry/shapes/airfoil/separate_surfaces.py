@@ -13,8 +13,8 @@ _WEDGE = 0.02  # near an edge the least thickness is this fraction of the distan
 def moved_apart(ring: Floats, nose: int) -> Floats:
     """Return a closed polygon (n, 2) whose two surfaces are moved apart, by up to `MOST` chords each.
 
-    The polygon `ring` runs clockwise from the trailing edge. This point and the leading edge, which has the
-    index `nose`, do not move.
+    The polygon `ring` runs clockwise from the trailing edge. The trailing edge and the leading edge, which
+    has the index `nose`, do not move.
     """
     chord = float(np.hypot(*(ring[nose] - ring[0])))
 

@@ -126,7 +126,7 @@ def _conflict(names: tuple[str, ...], given: Mapping[str, int], sums: Sums, leas
 
 
 def nearer(chords: Chords, counts: Indices, multiple: int = 1) -> Indices:
-    """Return `counts`, scaled so that a side with a prescribed count gets about `multiple` times that."""
+    """Return `counts`, scaled so that a side gets about `multiple` times its count, if one is prescribed."""
     counts = counts.copy()
     for name, row in sums_of(chords).items():
         total = sum(times * counts[chord] for chord, times in row.items())

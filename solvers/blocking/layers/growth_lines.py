@@ -47,11 +47,11 @@ class GrowthLines:
     def from_walls(
         cls, layout: Layout, walls: Bools, limit: float, elsewhere: float, sliding: Bools | bool = False
     ) -> Self:
-        """Return all pairs of consecutive edges on grid lines, each with a limit on the ratio of its lengths.
+        """Return all pairs of consecutive edges on grid lines, each with a limit on its length ratio.
 
         Limits are logarithms. `limit` applies across block sides, and on grid lines that start at the nodes
         in the mask `walls` (n,), `elsewhere` to other pairs and at irregular vertices. In blocks beside a
-        wall, pairs parallel to it may also have the ratio on the wall, unless its nodes are `sliding`.
+        wall, pairs parallel to the wall may also have the ratio on the wall, unless wall nodes are `sliding`.
         """
         mesh, pairs = layout.mesh, cls.of(layout.mesh, elsewhere)
         nodes = pairs.nodes

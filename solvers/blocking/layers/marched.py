@@ -58,9 +58,9 @@ def fitted(
 ) -> Floats:  # fmt: skip
     """Return nodes (n, m, 2) of valid layers of total `thickness`, or less where `room` (n,) is small.
 
-    `start` (n, 2) are the nodes of the closed wall, `arcs` (n,) their arc lengths, and `length` is its total
-    length. `place` returns, for messages, the position of a column as text. Raises InputError if a gap is too
-    narrow for layers, or if every march folds at a wall.
+    `start` (n, 2) are the nodes of the closed wall, `arcs` (n,) their arc lengths, and `length` is the wall's
+    total length. `place` returns, for messages, the position of a column as text. Raises InputError if a gap
+    is too narrow for layers, or if every march folds at a wall.
     """
     check_room(room, first, place)
     least = FEWEST_CELLS * first

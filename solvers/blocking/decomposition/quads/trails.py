@@ -54,7 +54,7 @@ class Trails:
         return trail, float(start + part * (stop - start))
 
     def locate(self, trail: Indices, length: Floats) -> tuple[Indices, Floats]:
-        """Return the pieces (q,) at positions `length` (q,) on trails, and the fraction of each before it."""
+        """Return the pieces (q,) at positions `length` (q,) on trails, and how far along each, 0 to 1."""
         ends = self.length[self.first[1:] + np.arange(len(self.first) - 1)]
         offset = np.append(0.0, np.cumsum(ends))
         owner = np.repeat(np.arange(len(ends)), np.diff(self.first))
