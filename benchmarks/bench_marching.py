@@ -31,8 +31,7 @@ HEAD = """# Volumes marched from surfaces: quality and time
 <!-- made by python benchmarks/bench_marching.py --page docs/benchmarks/marching-surfaces.md -->
 
 Use this page to find the quality and the CPU time of volumes that `solve-pde --method hyperbolic` [marches
-from surfaces](../guide/marching-surfaces.md). The cases are four surfaces from files and ten generated
-surfaces. Times are for one thread of {machine}.
+from surfaces](../guide/marching-surfaces.md). Times are for one thread of {machine}.
 
 - *bwb*: blended wing body. *m6_small*: ONERA M6 wing. These two, *even_sphere* and *uneven_sphere* are read
   from files.

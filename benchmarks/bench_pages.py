@@ -28,8 +28,7 @@ HEAD = """# Interactive pages: size and time
 <!-- made by python benchmarks/bench_pages.py --page docs/benchmarks/pages.md -->
 
 Use this page to find the size of an [interactive HTML page](../guide/pictures.md) of a grid (`meshonet plot
--o grid.html`), and the times to write and to display it. The second table compares meshonet with other
-libraries.
+-o grid.html`), and the times to write and to display the page.
 
 Times are elapsed times, medians of three runs, on a shared machine with two cores. *Time to display*: from
 loading the page to the first drawing of the grid, in Chromium without a graphics card.
