@@ -44,7 +44,7 @@ Each model is a safetensors file in `solvers/neural/pretrained/`. The metadata o
 | `widths` | U-Net: channels on each level, in units of eight, the finest level first |
 | `blocks` | U-Net: residual blocks on each level, on the way down and again on the way up |
 | `layers`, `width`, `modes` | Fourier neural operator: layers, channels, Fourier modes in a layer |
-| `basis` | Fourier neural operator: number of basis functions in η of its output |
+| `basis` | Fourier neural operator: its output is a sum of this many functions of η |
 """
 ERRORS_HEAD = """# Held-out errors of the shipped models
 

@@ -111,6 +111,6 @@ def flat_box(zoom: tuple[float, ...] | None, across: int | None = None) -> Box |
 
 
 def nothing_in(zoom: Sequence[float], low: Floats, high: Floats) -> InputError:
-    """Return the error for a `zoom` without cells in a grid with the extreme corners `low` and `high`."""
+    """Return the error for a window `zoom` that contains no cell of a grid, which lies in `low` to `high`."""
     spans = ", ".join(f"{name} {a:.4g} to {b:.4g}" for name, a, b in zip("xyz", low, high, strict=False))
     return InputError(f"zoom {zoom} shows none of the grid", f"it spans {spans}", parameter="zoom")

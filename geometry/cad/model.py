@@ -65,6 +65,6 @@ class CadModel:
         return extent_of(np.concatenate([self.vertices, *curves]))
 
     def boundary(self, sampling: Sampling) -> Boundary:  # noqa: ARG002 - as all shapes have it
-        """Raise InputError: the faces of a CAD file have no four edges in the plane."""
+        """Raise InputError: faces of a CAD file have no plane boundary of four sides."""
         problem = "is a CAD file, and its faces are not a boundary in the plane"
         raise InputError(problem, "make patches first: meshonet sample-boundary FILE -o surface.xyz")

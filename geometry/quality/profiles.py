@@ -73,7 +73,7 @@ class CheckResult:
         return max(broken, key=lambda limit: limit.level == "fail", default=None)
 
     def under(self, gates: Sequence[Gate]) -> "CheckResult":
-        """Return the outcome; if `gates` limit the same figure, their limits replace the profile's limits."""
+        """Return the outcome; gates on the figure of this check replace its limits."""
         compare = self.check.limits[0].compare
         own = [gate for gate in gates if gate.replaces(self.check.figure, compare)]
         limits = tuple(Limit("fail", gate.compare, gate.limit) for gate in own)

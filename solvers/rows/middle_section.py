@@ -31,7 +31,7 @@ _TRIES, _NEAR = 4, 0.03  # largest number of choices of counts; sufficient relat
 
 
 def coarse_section(plane: SectionPlane, *, early: bool = True) -> Layout:
-    """Return the coarse blocks of a section; `early` puts nodes at the corners of the blade from the start.
+    """Return the coarse blocks of a section; with `early`, corners of the blade have nodes already.
 
     Raises InputError if there is no room for inlet or outlet; NoValidGridError if cells are folded.
     """

@@ -25,7 +25,7 @@ _NONE: Mapping[int, int] = MappingProxyType({})
 
 
 def sums_of(chords: Chords) -> Sums:
-    """Return, for each side with a given cell count, the number of its edges in each chord (see `Chords`).
+    """Return, for each side with a given cell count, how many of its edges each chord (`Chords`) contains.
 
     Raises InputError if such a side begins or ends where the boundary goes straight on.
     """

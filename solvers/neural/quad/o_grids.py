@@ -43,9 +43,9 @@ def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) ->
 
 
 def moved(base: Any, factor: Any, head: int, network: Moves, xp: Any) -> Any:
-    """Return O grids `base` (batch, m + 1, n), unrolled to strips with equal steps, moved by the network.
+    """Return O grids as strips, moved by the network; `base` (batch, m + 1, n) are the strips before.
 
-    The last row of the result repeats the first, without the period. `factor` (batch, 1, 1) scales the grids
+    The last row of the result is equal to the first. `factor` (batch, 1, 1) scales the grids
     to unit size. `head` is the index of the network's output. For `network` see `coarse_grids.answered`.
     """
     strip = answered(base, (base * factor, 1.0 / factor), network, None, xp, around=True)

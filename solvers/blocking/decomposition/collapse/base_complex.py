@@ -74,7 +74,7 @@ class BaseComplex:
 
 
 def base_complex(mesh: QuadMesh, lines: Bools | None = None) -> BaseComplex:
-    """Return the blocks of a quad mesh, which also end at the edges in the mask `lines` (e,).
+    """Return the blocks of a quad mesh; edges in the mask `lines` (e,) are block boundaries too.
 
     Raises SolverError if the mesh is not manifold, or if a block does not consist of rows and columns.
     """
