@@ -1,4 +1,4 @@
-"""Notes that are also reported for batches of many grids, not only for a single grid."""
+"""Kinds of notes that are reported for batches too, or dropped when nodes move."""
 
 from collections.abc import Iterable
 
@@ -14,6 +14,12 @@ class Change(str):
 
 class Advice(str):
     """A note on the settings, which is the same for all shapes of a batch."""
+
+    __slots__ = ()
+
+
+class ExactHeights(str):
+    """A note that first cells have the prescribed height, which holds only until nodes move."""
 
     __slots__ = ()
 

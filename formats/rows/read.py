@@ -4,6 +4,7 @@ import math
 import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -66,6 +67,7 @@ def read_row(data: Table, source: Source) -> Row:
         gaps = tip * scale, foot * scale
         return Row(blade, hub * scale, shroud * scale, int(blades), *gaps, name, notes, turned, unit)
 
+    @cache
     def span() -> float:
         return row_dimensions(row(UNITS[unit])).span
 

@@ -3,6 +3,7 @@
 import math
 
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.notes import ExactHeights
 
 FORMULA = "y = y+ c / (Re sqrt(Cf/2)), Cf = (2 log10(Re x/c) - 0.65)^-2.3"
 SOURCE = "Schlichting, Boundary-Layer Theory, 7th ed. (1979), chapter XXI"
@@ -55,4 +56,4 @@ def first_cell_note(
     if max(abs(low / target - 1.0), abs(high / target - 1.0)) > SAME:
         return f"first cells are {low:.3g} to {high:.3g} instead of {size}"
     rows = "" if growth is None else f"; the mean growth ratio is {growth:.3f}"
-    return f"the first-cell height is {size} at every {where}{rows}"
+    return ExactHeights(f"the first-cell height is {size} at every {where}{rows}")

@@ -105,7 +105,10 @@ def marched(front: Front, rows: int, layers: MarchLayers) -> Floats:
         cells = -(-cells // multiple) * multiple
     nodes = _unfolded(front, cells, layers)
     excess: list[float] = []
-    while growth and (excess := [*excess, float(fastest(nodes).max()) - math.log(growth)])[-1] > 0.0:
+    while growth:
+        excess.append(float(fastest(nodes).max()) - math.log(growth))
+        if not excess[-1] > 0.0:
+            break
         cells += -(-(1 + (cells - least) // 8) // multiple) * multiple
         beyond = min(excess) > (1.0 - GAIN * (cells / least - 1.0)) * excess[0]
         if cells > 2 * least + 8 or (beyond and len(excess) > TRIED):

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import MeshonetError
+from meshonet.geometry.notes import ExactHeights
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.shape import Shape, SpatialShape
 from meshonet.geometry.threads import limited_to
@@ -211,7 +212,7 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
     with stage("guard", seconds):
         if count_folded(solution.grid.nodes) and request.repairs():
             solution, more = _repaired(solution, boundary, request)
-            kept = (note for note in notes if not (more and note.startswith("the first-cell height is")))
+            kept = (note for note in notes if not (more and isinstance(note, ExactHeights)))
             notes = (*kept, *more)
     grid = replace(solution.grid, origin=boundary.origin)
     solution = replace(solution, grid=grid, notes=notes, growth=request.growth or math.inf)

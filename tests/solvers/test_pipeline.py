@@ -6,6 +6,7 @@ from solver_shapes import arch, hole
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError, NoValidGridError, SolverError
+from meshonet.geometry.spacing.y_plus import first_cell_note
 from meshonet.solvers.algebraic.tfi import solve as interpolate
 from meshonet.solvers.pipeline.coarse import Coarse, Sequenced
 from meshonet.solvers.pipeline.fallback import guard
@@ -73,7 +74,7 @@ def test_first_cells_that_the_guard_changes_are_noted(monkeypatch: pytest.Monkey
         made = interpolate(boundary)
         nodes = made.grid.nodes.copy(order="K")
         nodes[10, 1], nodes[10, 2] = nodes[10, 2].copy(), nodes[10, 1].copy()
-        exact = ("the first-cell height is 0.001 at every wall node",)
+        exact = (first_cell_note(1e-3, 1e-3, 1e-3, None),)
         return Solution(boundary.grid(nodes), "fake", notes=exact, first_cells={"south": 1e-3})
 
     monkeypatch.setattr(METHOD_OF, lambda _: Each("fake", fold))

@@ -21,8 +21,11 @@ MARCH_GROWTH = 1.2
 THINNER = 0.6  # factor on the thickness after every march has folded
 TRIES = 4  # thicknesses, the last a fifth of the first
 BLUNT = "{base} 0.005"  # option that opens the sharp edge of an airfoil
-AT_SHARP_EDGE = "use thinner first cells; "  # remedy where layers fold: a wall can turn by nearly 180 degrees
-AT_SHARP_EDGE += f"at the sharp edge of an airfoil give {BLUNT}, or {{te}} round in place of a wedge"
+AT_SHARP_EDGE = (
+    f"use thinner first cells; at the sharp edge of an airfoil give {BLUNT}, "
+    "or {te} round in place of a wedge"
+)
+"""Remedy where layers fold because a wall turns by nearly 180 degrees."""
 FEWEST_CELLS = 4.0  # smallest thickness of layers in first cells
 
 

@@ -208,7 +208,8 @@ def _refusal(
     elif under:
         problem += f", the worst above {surface.place(under[0])}"
     remedy = remedy or f"give a nearer {{far_field}}, or {smoother}"
-    remedy = remedy if volume.made else "use a smaller {first_cell}"
+    if not volume.made:
+        remedy = "use a smaller {first_cell}"
     return NoValidGridError(f"{problem}; {remedy}", worst)
 
 
