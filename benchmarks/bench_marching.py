@@ -39,10 +39,10 @@ from surfaces](../guide/marching-surfaces.md). Times are for one thread of {mach
   around it.
 - *levels*: number of nodes along a grid line from the surface to the far field.
 - *first-cell height*, *distance of the far field*: prescribed values, in the length unit of the surface.
-- *folded cells*: cells in which a corner Jacobian, or a Bezier coefficient of the Jacobian, is not positive.
+- *folded cells*: cells in which a Bezier coefficient of the Jacobian is not positive.
 - *relative error of first-cell height*: maximum over the nodes of the surface.
-- *angle off the normal*: deviation from 90 degrees of the angles between grid lines off the surface
-  and the grid lines that cross them.
+- *angle off the normal*: deviation from 90 degrees of the angles between the grid lines that leave the
+  surface and the grid lines that cross them.
 - *growth*: ratio of the heights of adjacent cells along a grid line, larger over smaller, minus 1.
   *prescribed growth*: follows from first-cell height, levels and distance of the far field. *largest growth*:
   maximum over the volume.

@@ -275,7 +275,7 @@ cells.
 - *interpolation*, *extrapolation*: shapes inside and outside the range of the training shapes of MeshONet.
 - *network*: `quad-winslow` for the first four families, `airfoil-o` for the airfoil, and `hole-winslow` for
   the plate with a hole. These networks were not trained on the families.
-- *network, polished*: 2 multigrid cycles after the network; for the airfoil the conformal map of `infer`.
+- *network, polished*: 2 multigrid cycles after the network; for the airfoil the grid of `infer`.
 - *MeshONet*: the network of the paper. *MeshONet-hard*: a similar network that keeps the given boundary
   nodes. [Both](paper/index.md) were trained on 30 shapes of each family. For both the distance is from the
   grid of `solve-pde` with 101x101 nodes.

@@ -23,9 +23,9 @@ FirstCell = Annotated[str | None, _option(
     "--first-cell", "--wall-spacing", metavar="H|WALL=H,...", help="Height of the first cell at walls, in "
     "the unit of the input. In a one-block grid around a body the unit is the chord of an airfoil, or the "
     "largest extent of another body. WALL=H,WALL=H applies to the named walls only. H applies to the body; "
-    "to south, north and sides named wall of a four-sided domain; to the holes of a multi-block grid. If "
-    "there are no holes, H applies to all sides, provided that one is named inlet, outlet, axis, symmetry or "
-    "farfield. H never applies to sides with these names. [default: no layers]",
+    "to south, north and sides named wall of a four-sided domain; to the holes of a multi-block grid. H "
+    "never applies to sides named inlet, outlet, axis, symmetry or farfield. If a multi-block grid has such "
+    "sides but no holes, H applies to all other sides. [default: no layers]",
 )]
 YPlus = Annotated[float | None, _option(
     metavar="Y", help="y+ at the height of the first cell, instead of --first-cell; y+ at the cell "

@@ -58,8 +58,8 @@ class SamplingOptions:
     )
     te: Literal["auto", "exact", "round", "wedge"] = _option(
         default="auto", help="Shape of a blunt trailing edge. exact: unchanged. round: corners rounded. "
-        "wedge: closed by a wedge. auto: exact in O grids; exact in marched C grids if the base is "
-        "higher than 10 first cells, or higher than 0.005 chords and one first cell; else wedge.",
+        "wedge: closed by a wedge. auto: exact in O grids; exact in marched C grids unless the base is "
+        "only a few first cells high; else wedge.",
     )
     far_field: float | None = _option(
         metavar="R", help="Smallest distance of the far field from the middle of the body, in chords of a "
