@@ -42,7 +42,7 @@ class Inputs:
     suffixes : extensions of files taken from folders and archives; empty: all that can be read.
     pick : patterns (``naca*``) for file names in folders, archives and lists; upper and lower case are equal
         and the extension may be left out. A pattern with a ``/`` is compared with the whole path.
-    shard : (k, n): `own` and `parts` yield each n-th input, beginning with the k-th.
+    shard : (k, n): only inputs k, k + n, k + 2 n, ... are yielded by `own` and `parts`.
     grids_only : whether only files with grids are taken from folders and archives.
 
     Raises InputError if standard input occurs twice or is a terminal, if the shard is invalid, or if patterns

@@ -9,7 +9,7 @@ Made = TypeVar("Made")
 
 
 class cached_property(functools.cached_property[Made]):  # noqa: N801  # as the one that it is
-    """`functools.cached_property` without the lock that in Python 3.11 all objects of a class share."""
+    """`functools.cached_property` without its lock, which all objects of a class share in Python 3.11."""
 
     def __init__(self, work: Callable[[Any], Made]) -> None:
         super().__init__(work)

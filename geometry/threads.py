@@ -42,7 +42,7 @@ def thread_count() -> int:
 
 
 def threads_for(nodes: int, visits: int = 1) -> int:
-    """Return the number of threads for a loop that visits `nodes` nodes `visits` times; 1 for few visits."""
+    """Return how many threads suit a loop that visits `nodes` nodes `visits` times; 1 for short loops."""
     return max(min(thread_count(), visits * nodes // NODES_EACH), 1)
 
 

@@ -42,7 +42,7 @@ class SparsePattern:
 
     @property
     def places(self) -> Indices:
-        """Position (n,) of each row in the elimination order."""
+        """Position (n,) of each row of the matrix in the order of elimination."""
         order = self.arrays[0]
         places = np.empty(len(order), dtype=np.intp)
         places[order] = np.arange(len(order))
@@ -50,7 +50,7 @@ class SparsePattern:
 
     @property
     def fill(self) -> int:
-        """Number of entries of the factor below its diagonal."""
+        """Number of nonzero entries of the factor below its diagonal."""
         return int(self.arrays[4][-1])
 
     def matrix(self, values: Floats) -> "SparseMatrix":

@@ -170,7 +170,7 @@ def body(grid: Grid) -> Floats:
 def reduced(
     by: np.ufunc, values: NDArray[Any], columns: NDArray[np.intp], rows: NDArray[np.intp]
 ) -> NDArray[Any]:
-    """Return cell values combined by the function `by` in rectangles with the bounds `columns` and `rows`."""
+    """Return cell values, combined by `by` in rectangles whose index bounds are `columns` and `rows`."""
     joined: NDArray[Any] = by.reduceat(by.reduceat(values, columns[:-1], axis=0), rows[:-1], axis=1)
     return joined
 
@@ -202,7 +202,7 @@ def _blocks(sizes: Floats) -> NDArray[np.intp]:
 
 
 def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
-    """Return (lengths along i, areas) and (lengths along j, areas) of sampled cells in view."""
+    """Return (lengths along i, areas), then (lengths along j, areas), of some of the cells in view."""
     i, j = np.nonzero(part.mask)
     stride = max(1, len(i) // _SAMPLE)
     i, j = i[::stride] + part.i0, j[::stride] + part.j0
@@ -213,7 +213,7 @@ def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tup
 
 
 def line_step(length: Floats, area: Floats, pixels: float) -> int:
-    """Return the step 1, 2, 5, 10, ... between lines that are 6 pixels or more apart in half of the area.
+    """Return the step 1, 2, 5, 10, ... with which lines are 6 pixels or more apart in half of the area.
 
     `length` and `area` are a pair from `line_gaps`; `pixels` is the number of pixels per unit of length.
     """

@@ -36,7 +36,7 @@ def steps_of(sheet: CellSheet, axes: Floats, pixels: float, every: int | None) -
 
 @dataclass(frozen=True, eq=False)
 class Painted:
-    """Projected quadrilaterals (n, 4, 2), their colours (n, 4), outlines (m, 2, 2), and depths of all."""
+    """Projected quadrilaterals (n, 4, 2) with colours (n, 4), outlines (m, 2, 2), and the depths of both."""
 
     quads: Floats
     depth: Floats

@@ -60,9 +60,9 @@ class CellSheet:
 
 
 def layers(grid: Grid, at: Slice, values: list[Floats] | None) -> list[CellSheet]:
-    """Return the grid surface that the index `at` defines in each block that has this index.
+    """Return, for each block with this index, its grid surface of constant index, such as k = 0.
 
-    The values of the surface are from the adjacent cells. Raises InputError if no block has the index.
+    The surface has the values of the adjacent cells. Raises InputError if no block has the index.
     """
     index = at.index or 0
     sheets = []

@@ -94,11 +94,11 @@ class PartFiles:
         return 0
 
     def state(self, number: int, inputs: Sequence[Input]) -> State:
-        """Return the state of a part: ``missing``, ``complete``, or ``extended`` (it must be extended).
+        """Return the state of a part of a dataset: ``missing``, ``complete``, or ``extended`` if it must be.
 
-        A part must be extended if there are more `inputs` than it was made of, or if a failed input has
-        changed or may succeed now. Raises OtherPartsError if the part was made of other inputs or settings,
-        InputError if it cannot be read.
+        A part must be extended if there are more `inputs` now, or if an input that failed has changed or may
+        succeed now. Raises OtherPartsError if the part was made of other inputs or settings, InputError if it
+        cannot be read.
         """
         if not self.path(number).exists():
             return "missing"

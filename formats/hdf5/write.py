@@ -110,10 +110,7 @@ class Writer:
         self._held.setdefault(name, []).append((self._count, value))
 
     def note(self, facts: Mapping[str, str], digests: Sequence[str], failed: Sequence[str]) -> None:
-        """Write how samples were made: `facts` by name, digests of inputs, and texts about failed samples.
-
-        The facts become attributes of fixed length, which can be read without a check for damaged texts.
-        """
+        """Write how samples were made: `facts` by name, digests of inputs, and texts about failed samples."""
         size, connections = self._first or ("", "")
         joined = f", connected as {_digest(connections)}" if connections else ""
         common = {_attribute(name): _digest(str(fact)) for name, fact in self._common.items()}

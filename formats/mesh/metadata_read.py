@@ -35,9 +35,9 @@ def says_in_space(facts: Facts) -> bool:
 
 
 def nodes_by_facts(coordinates: Sequence[Floats], facts: Facts) -> Floats:
-    """Return the nodes of a block, planar or in 3-D, from x, y[, z], each (n1, n2, n3).
+    """Return the nodes of a block from x, y[, z], each (n1, n2, n3); `facts` are its metadata.
 
-    Raises InputError if the block is not planar and its metadata `facts` do not say that it is in 3-D.
+    Raises InputError if the block is not planar and its metadata do not say that it is in 3-D.
     """
     if not says_in_space(facts):
         return planar(coordinates)

@@ -78,10 +78,10 @@ def outer_parts(
 def periodic_pairs(
     grid: Grid, numbers: Sequence[Indices], cells: Sequence[Indices], taken: Iterable[str]
 ) -> list[PeriodicPair]:
-    """Return the pairs of periodic boundaries of a grid, one for each motion and pair of patch names.
+    """Return the pairs of periodic boundaries of a grid, with a name for each boundary.
 
-    `numbers` and `cells` have node and cell numbers of each block. Unnamed boundaries are called periodic1,
-    periodic2 and so on, without the names in `taken`.
+    `numbers` and `cells` have node and cell numbers of each block. A boundary without a patch name is called
+    periodic1, periodic2 and so on. Names in `taken` are not used.
     """
     motions: list[Motion] = []
     by_motion: dict[tuple[int, str, str], list[tuple[NamedFaces, NamedFaces]]] = {}

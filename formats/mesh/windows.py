@@ -97,7 +97,7 @@ def patch_of(face: Face, lattices: Sequence[IndexedNodes]) -> Patch | None:
 
 
 def connection_of(pair: Pair, lattices: Sequence[IndexedNodes]) -> Connection | None:
-    """Return the connection of a pair of rectangles; None if a rectangle is not on a single side.
+    """Return the connection of a pair of index ranges; None if a range is not on a single side of a block.
 
     No translation or rotation is set. Raises InputError as `part_of`, and if indices do not correspond.
     """

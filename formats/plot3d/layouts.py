@@ -44,7 +44,7 @@ class FileLayout:
         return int(self.counted) + self.axes * len(self.dims)
 
     def starts(self, real: int = 1, integer: int = 1) -> list[int]:
-        """Return the positions of the blocks and of the end; numbers take `real` or `integer` bytes."""
+        """Return where blocks and file end if numbers take `real` and `integer` bytes."""
         node = self.axes * real + integer * int(self.iblank)
         return list(
             itertools.accumulate((node * prod(dims) for dims in self.dims), initial=integer * self.header)
@@ -176,7 +176,7 @@ class Candidate:
 
 
 def best(candidates: list[Candidate]) -> Candidate:
-    """Return the candidate of greatest regularity; if several are equal, the first of them."""
+    """Return the candidate with the highest `regularity`; of equal candidates, the first."""
     return candidates[0] if len(candidates) == 1 else max(candidates, key=Candidate.regularity)
 
 

@@ -25,8 +25,8 @@ _NAMES = {"x", "y", "z", "r", *_ANGLES}
 def point_blocks(source: Source, orders: Sequence[str]) -> list[Floats]:
     """Return the blocks (n, k) of points in a file; all have the same number k of columns.
 
-    `orders` lists permitted columns, such as ``x, y, z`` or ``x, r``; k tells which of them apply. Raises
-    InputError, with the place: other columns; no block; a blade that is a splitter.
+    `orders` lists the permitted columns, such as ``x, y, z`` or ``x, r``; k tells which apply. Raises
+    InputError, with the place: other columns; no block; a splitter blade.
     """
     return [points for points, _ in placed_blocks(source, orders)]
 

@@ -99,7 +99,7 @@ def _lines(text: str) -> tuple[Line, ...]:
 
 
 def mostly_rows(head: bytes, counts: tuple[int, ...], least: int) -> bool:
-    """Return whether at least `least` rows, and four fifths of all, contain a permitted count of numbers."""
+    """Return whether at least `least` rows, and 80 % of all rows, contain a permitted count of numbers."""
     try:
         lines = read_lines(decode(head))
     except InputError:

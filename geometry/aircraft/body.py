@@ -153,7 +153,7 @@ class Body:
         return np.asarray(np.hypot(points[:, 1] - self.y, points[:, 2]) - r)
 
     def beside(self, point: Floats) -> str:
-        """Return a text with the distance of a `point` (3,) from the axis, and the radius at the same x."""
+        """Return the distance of `point` (3,) from the axis and the radius at its x, in words."""
         away, radius = np.hypot(point[1] - self.y, point[2]), float(np.interp(point[0], *self.meridian.T))
         return f"{away:.4g} from its axis, where its radius is {radius:.4g}"
 

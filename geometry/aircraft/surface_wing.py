@@ -98,7 +98,7 @@ class SurfaceWing:
 
     @cached_property
     def arcs(self) -> Floats:
-        """Length of each strip's part of the section at half span, in chords (strips,)."""
+        """Arc lengths (strips,) of the strips' parts of the section at half span, in chords."""
         z = self.z[[_LEVELS // 2]]
         lengths = [float(norms(np.diff(at_heights(strip, z)[0], axis=0)).sum()) for strip in self.strips]
         return np.array(lengths) / self.sizes(z)[0]
@@ -126,7 +126,7 @@ class SurfaceWing:
         return self.lines(np.array([place]))[0]
 
     def lines(self, places: Floats) -> list[Floats]:
-        """Return the lines (stations, 3) along the span at ascending `places` (n,); see `line`."""
+        """Return lines (stations, 3) along the span at ascending positions `places` (n,); see `line`."""
         numbers = np.minimum(places.astype(int), len(self.strips) - 1)
         out: list[Floats] = []
         for number in range(len(self.strips)):
@@ -139,7 +139,7 @@ class SurfaceWing:
         return float(np.interp(place, np.arange(len(self.strips) + 1), self._bounds))
 
     def places(self, arcs: Floats) -> Floats:
-        """Return the places (n,) at lengths `arcs` (n,) from the upper trailing edge (inverse of `arc`)."""
+        """Return the positions (n,) around the section at arc lengths `arcs` (n,); the inverse of `arc`."""
         return np.interp(arcs, self._bounds, np.arange(len(self.strips) + 1))
 
     @property

@@ -48,7 +48,7 @@ class Connection:
 
     @property
     def ends(self) -> tuple[tuple[int, Side, Range], tuple[int, Side, Range]]:
-        """Block number, name of the side and index range: first of the side, then of the donor."""
+        """Block number, side and index range: of the connection's side, then of its donor."""
         return (self.block, self.side, self.range), (self.donor, self.donor_side, self.donor_range)
 
     def pairs(self, values: Sequence[NDArray[Any]]) -> tuple[NDArray[Any], NDArray[Any]]:

@@ -71,7 +71,7 @@ class Patch:
 
     @property
     def place(self) -> tuple[int, int]:
-        """Index direction normal to the side, and the end of the block there (see `blocks.block.PLACES`)."""
+        """Direction normal to the side, and which end of the block it is (see `blocks.block.PLACES`)."""
         return PLACES[self.side]
 
     @property

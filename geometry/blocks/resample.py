@@ -55,8 +55,8 @@ def resample_edges(
     """Return the four `edges` of a block, resampled to `ni` nodes along xi and `nj` along eta.
 
     The wake is the first and the last `wake` cells of the south edge. The nodes of these two parts stay
-    equal, and the wake keeps its fraction of the edge's cells. `closed` says whether south and north are
-    closed.
+    equal, and the fraction of the edge's cells that belong to the wake is kept. `closed` says whether south
+    and north are closed.
 
     Raises InputError: too few nodes for a closed edge, or for the wall between the two sides of a wake.
     """
@@ -93,7 +93,7 @@ def _in_pieces(side: Floats, ends: tuple[int, ...], places: tuple[int, ...], clo
 def resample_patches(
     patches: tuple[Patch, ...], had: tuple[int, int], has: tuple[int, int], wake: int
 ) -> tuple[Patch, ...]:
-    """Return the patches after node counts (xi, eta) change from `had` to `has`; `wake`: `Boundary.wake`."""
+    """Return `patches` with new index ranges, after node counts (xi, eta) change from `had` to `has`."""
     along_xi, along_eta = _marks(had[0], has[0], wake), _marks(had[1], has[1], 0)
 
     def moved(patch: Patch) -> Patch:

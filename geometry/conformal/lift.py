@@ -63,7 +63,7 @@ class Lift:
     phase: Any
 
     def to_plane(self, w: Any, xp: Any = np) -> Any:
-        """Map points w of the strip, an array of any shape, to the plane; `xp` is numpy or torch."""
+        """Return the points of the plane for points w (of any shape) of the strip; `xp` is numpy or torch."""
         zeta = self.pole + functions_of(xp).exp(w + 1j * self.phase)
         for corner in reversed(self.corners):
             zeta = corner.restore(zeta)
@@ -105,5 +105,5 @@ def follow(wall: Complexes, centre: complex, quarter: complex) -> Complexes:
 
 
 def removable(k: float) -> bool:
-    """Return whether a `Corner` map can straighten a corner with exterior angle k pi."""
+    """Return whether a map of the class `Corner` can straighten a corner with exterior angle k pi."""
     return 0.55 < k < 0.995 or 1.03 < k < 1.9

@@ -158,11 +158,11 @@ def periodic_slopes(chord: Floats, h: Floats) -> Floats:
 def limited(
     points: Floats, start: Floats, stop: Floats, *, closed: bool, corners: Indices
 ) -> tuple[Floats, Floats]:
-    """Return slopes (intervals, 2) `start` and `stop` of each interval, limited to avoid overshoots.
+    """Return slopes (intervals, 2) at the `start` and `stop` of each interval, limited to avoid overshoots.
 
     Tangents stay near the directions of the two chords that meet at a point. At `corners` (indices of
-    points), the curve has a tangent on each side. Its angle to this side's chord is at most about the angle
-    by which the polygon turns at the chord's other end. A closed curve does not repeat its first point.
+    points), the curve has one tangent before and one after the point. A closed curve does not repeat its
+    first point.
     """
     n = len(points)
     chord = rolled(points, -1) - points  # the last of an open curve is not used

@@ -114,9 +114,9 @@ class Loop:
         return self.names[stretch]
 
     def steps(self, arcs: Floats, ways: Floats | float) -> Floats:
-        """Return the signed arc lengths (n - 1,) from node to node, for nodes at `arcs` (n,) on the loop.
+        """Return the signed arc lengths (n - 1,) between successive nodes, given at `arcs` (n,) on the loop.
 
-        `ways` is 1 if nodes follow the loop's direction, else -1; a step may thus exceed half the loop.
+        `ways` is 1 if the nodes are in the loop's direction, -1 if they are in the opposite direction.
         """
         step = shortest_ways(np.diff(arcs), self.length)
         return np.where(step * ways < -EQUAL * self.length, step + ways * self.length, step)

@@ -73,7 +73,7 @@ def polyline(corners: Corners, n: int, like: Corners | None = None) -> Floats:
 
 
 def arch(height: float, ni: int, nj: int) -> Boundary:
-    """Case 1: return the unit square with the top y = 1 + h sin(pi x), nodes at equal steps of x."""
+    """Case 1: return a unit square with its top replaced by y = 1 + h sin(pi x); steps of x are equal."""
     x = np.linspace(0.0, 1.0, ni)
     top = np.stack([x, 1.0 + height * sin(np.pi * x)], axis=1)
     top[-1] = 1.0, 1.0

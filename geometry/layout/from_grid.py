@@ -52,7 +52,7 @@ def layout_of(grid: Grid) -> Layout:
 
 
 def with_nodes(grid: Grid, layout: Layout) -> Grid:
-    """Return `grid` with the moved nodes of `layout`, the layout that was made from `grid`."""
+    """Return `grid` with the nodes of `layout`, a layout that was made from it and whose nodes have moved."""
     nodes = layout.mesh.nodes
     return replace(grid, blocks=tuple(Block(nodes[block]) for block in layout.blocks))
 

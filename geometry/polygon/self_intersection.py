@@ -98,7 +98,7 @@ def _pairs_by_tree(p: Floats, end: Floats, closed: bool, limit: int) -> list[tup
 
 
 def crossing_of(p: Floats, end: Floats, i: int, j: int) -> Crossing:
-    """Return the crossing of segments `i` and `j`, a point that lies on both, even if they are collinear.
+    """Return a common point of the segments `i` and `j`, which cross, touch or overlap.
 
     Segments run from `p` (m, 2) to `end` (m, 2).
     """

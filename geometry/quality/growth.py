@@ -133,13 +133,13 @@ def across_wake(grid: Grid) -> Floats:
 
 
 def strips(nodes: Floats, more: int) -> Iterator[tuple[int, Floats]]:
-    """Yield first index i and nodes of parts of `nodes` (ni, nj, 2); consecutive parts share `more` lines."""
+    """Yield parts of `nodes` (ni, nj, 2), with their first index i; neighbours share `more` lines."""
     for i in range(0, max(len(nodes) - more, 0), ROWS):
         yield i, nodes[i : i + ROWS + more]
 
 
 def ratios(nodes: Floats) -> Floats:
-    """Return the ratios (m-2, ...) of successive edges along the first axis of `nodes` (m, ..., d), >= 1."""
+    """Return ratios >= 1 (m-2, ...) of successive edges along the first axis of `nodes` (m, ..., d)."""
     length = norms(np.diff(nodes, axis=0))
     before, after = length[:-1], length[1:]
     small = np.minimum(before, after)

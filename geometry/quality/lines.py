@@ -29,7 +29,7 @@ class Lines:
 
     `growth` is along each direction of the blocks. Fields that end in ``_inside`` are at nodes inside blocks,
     fields that end in ``_across`` at nodes on sides between blocks. `leaving` is the growth along all lines
-    that leave walls, through all blocks; `by_wall` gives it for each wall.
+    that start at walls, continued from block to block. `by_wall` has this growth for each wall.
     """
 
     growth: Growth
@@ -191,7 +191,7 @@ def _solid_across(grid: Grid, each: Connection, kept: bool) -> BlockLines:
 
 
 def growth_of_cells(grid: Grid) -> list[Floats]:
-    """Return, for each block, the greatest growth (ni-1, nj-1[, nk-1]) at the nodes of each cell."""
+    """Return, for each block, the greatest growth ratio (ni-1, nj-1[, nk-1]) at the corners of each cell."""
     at_nodes = [np.ones(block.counts) for block in grid.blocks]
     for block, values in zip(grid.blocks, at_nodes, strict=True):
         for axis in range(values.ndim):

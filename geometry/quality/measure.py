@@ -139,7 +139,7 @@ def _run(grid: Grid, kept: slice) -> CellRun:
 
 
 def angles(nodes: Floats) -> tuple[float, float]:
-    """Return maximum and mean of the cells' largest angles in degrees; 360 if `nodes` (ni, nj, 2) fold."""
+    """Return maximum and mean of each cell's largest angle in degrees; 360 if `nodes` (ni, nj, 2) fold."""
     if count_folded(nodes):
         return 360.0, 360.0
     table, _ = _angle_table(nodes)

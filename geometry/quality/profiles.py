@@ -19,7 +19,7 @@ Verdict = Literal["pass", "warn", "fail", "none"]
 
 @dataclass(frozen=True)
 class Limit:
-    """A condition that a figure must not meet; `level` says whether this is a warning or a failure."""
+    """A comparison with `value`; a grid for which it is true gets a warning or fails, as `level` says."""
 
     level: Level
     compare: str  # one of `COMPARE`
@@ -36,10 +36,10 @@ class Check:
 
 @dataclass(frozen=True)
 class CheckResult:
-    """The outcome of a check of a profile; `figure` is None if the grid has no such figure.
+    """The outcome of one check of a quality profile; `figure` is the checked value, None if there is none.
 
-    `profile` is the name of the profile. `centre` (2 or 3,) is the centre of the cell with the figure. If
-    `gated`, gates of the user replace the limits.
+    `profile` is the name of the profile. `centre` (2 or 3,) is the centre of the cell with this value. If
+    `gated`, the limits are the user's, not the limits of the profile.
     """
 
     check: Check

@@ -106,7 +106,7 @@ class Channel:
         return self._parts[k](s)
 
     def at(self, s: Floats, h: Floats) -> Floats:
-        """Return x and r (..., 2) at `s` and `h` (...)."""
+        """Return x and radius (..., 2) of points with coordinates `s` and `h` (...)."""
         out = np.empty((s.size, 2))
         channel_points(
             self._tables, np.ascontiguousarray(s).reshape(-1), np.ascontiguousarray(h).reshape(-1), out
@@ -114,7 +114,7 @@ class Channel:
         return out.reshape(*s.shape, 2)
 
     def in_space(self, values: Floats) -> Floats:
-        """Return x, y, z (..., 3) of points `values` (..., 3), given by s, theta, h; theta is atan2(y, z)."""
+        """Return x, y, z (..., 3) of points with coordinates s, theta, h (..., 3); theta is atan2(y, z)."""
         out = np.empty(values.shape)
         channel_space(self._tables, np.ascontiguousarray(values).reshape(-1, 3), out.reshape(-1, 3))
         return out
@@ -122,7 +122,7 @@ class Channel:
     def store(self, values: Floats, ids: Indices, space: Floats) -> None:
         """Write x, y, z of points into `space` (levels, n, 3), at the indices `ids` (m,) of its second axis.
 
-        `values` (levels, m, 3) are s, theta, h of the points on each level of the span.
+        `values` (levels, m, 3) are s, theta, h of these points on each level along the span.
         """
         channel_nodes(self._tables, values, ids, space)
 
@@ -136,8 +136,8 @@ class Channel:
     def put_on_blade(self, columns: Floats, wall: Floats, first: float) -> None:
         """Move columns of nodes, in place, to begin on the blade with first cells of height `first`.
 
-        `columns` (..., rows, 3) are s, theta, h of nodes. `wall` (..., 2) are s, theta of points on the
-        blade. Displacements fade to 0 at the last node of a column.
+        `columns` (..., rows, 3) are s, theta, h of nodes. `wall` (..., 2) are s, theta of their new first
+        nodes. Displacements fade to 0 at the last node of a column.
         """
         flat = columns.reshape(-1, *columns.shape[-2:])
         columns_on_blade(self._tables, wall.reshape(-1, 2), first, flat)

@@ -193,7 +193,7 @@ class BladeProfile:
         return float(np.abs(first - second).max())
 
     def arcs(self, u: Floats) -> Floats:
-        """Return the arc lengths (n,) in the plane (m', theta) at places `u` (n,) from 0 to 1."""
+        """Return the arc lengths (n,) along the profile at places `u` (n,); u is from 0 to 1 around it."""
         return np.asarray(np.mod(self.leading + np.interp(u, *self._stops), self.curve.length))
 
     def corner_places(self) -> Floats:
@@ -203,7 +203,7 @@ class BladeProfile:
         return np.sort(wrapped(at, -0.25))
 
     def at(self, u: Floats) -> Floats:
-        """Return s, theta and h (n, 3) at places `u` (n,)."""
+        """Return s, theta and h (n, 3), the coordinates of `Channel`, at places `u` (n,)."""
         arcs = self.arcs(u)
         m, theta = self.curve.at(arcs).T
         return np.stack([self._map.back(m), theta, self._heights(arcs)], axis=1)

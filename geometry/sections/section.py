@@ -90,7 +90,7 @@ class Section:
 
     @property
     def placement(self) -> Floats:
-        """Six numbers that a stack interpolates in z: chord, twist in radians, x, y, two numbers `about`."""
+        """Six numbers that are interpolated between sections: chord, twist in radians, x, y, `about`."""
         return np.array([self.chord, math.radians(self.twist), self.x, self.y, *self.about])
 
 

@@ -165,10 +165,7 @@ class Stack:
 
     @property
     def steep(self) -> str:
-        """Note on the panel that is most inclined to the normals of its sections; empty if none is steep.
-
-        A panel is thinner than its sections by the cosine of its angle to the normal of the sections.
-        """
+        """Note on the panel with the greatest angle to its sections' normals; empty if that is small."""
         if self.kind != "wing":
             return ""
         inclined = np.abs(self.dihedrals - np.stack([self.cants[:-1], self.cants[1:]])).min(axis=0)
@@ -183,7 +180,7 @@ class Stack:
         )
 
     def lofted(self, unit: Floats, z: Floats, weight: Floats | None = None) -> Floats:
-        """Return nodes (m, n, 3) of sections whose leading edges are at `z` (m,) along the span.
+        """Return nodes (m, n, 3) of interpolated sections, with leading edges at `z` (m,) along the span.
 
         `unit` (sections, n, 2) are nodes of the given sections at unit chord. Shape, chord, twist and
         position are interpolated separately. Nodes whose `weight` (n,) is 1 have the twist and chord of the

@@ -36,9 +36,9 @@ def assembled(
 ) -> DomainShape:
     """Return the domain that `shapes` form together; `names` has a name for each.
 
-    Airfoils keep their smooth curves; other shapes become polygons. The outer boundary is the shape that is
-    around all others, or else a circle. The radius of the circle is `sampling.radius` times the extent of all
-    shapes. Raises InputError: shapes that are not closed curves; a far field that does not apply.
+    Airfoils keep their smooth curves; other shapes become polygons. The outer boundary is the shape that
+    encloses all others, or else a circle with the radius `sampling.radius` times the extent of all shapes.
+    Raises InputError: shapes that are not closed curves; a far field although a shape encloses all others.
     """
     _check_airfoils(shapes, sampling)
     as_asked = [_as_asked(shape, sampling) for shape in shapes]

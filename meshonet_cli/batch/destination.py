@@ -108,7 +108,7 @@ class Destination:
     def part_size_for(self, inputs: Inputs | DrawnInputs, files: Files, *, elsewhere: bool) -> int:
         """Return the number of inputs in a part of the dataset; 0 if the output has no parts.
 
-        There are parts if requested, for a shard, to continue existing parts, and for more than `MANY`
+        The output has parts if the user asks for them, if parts exist, and for a shard or more than `MANY`
         inputs. Parts are smaller for a shard, or if workers may be on other machines (`elsewhere`). Raises
         InputError if an existing dataset would be replaced or cannot be continued.
         """

@@ -17,7 +17,7 @@ STAGES = ("read", "boundary", "load", "layout", "grid", "guard", "quality", "com
 
 @dataclass
 class Timed:
-    """Report of a member of a batch: its output file, whether it was `left_out`, seconds of each stage."""
+    """Report of a member of a batch: its output file, whether it was left out, the seconds of each stage."""
 
     item: Item[Any]
     notes: tuple[str, ...] = field(default=(), kw_only=True)

@@ -45,10 +45,10 @@ def _grids(
 def reported(
     member: Item[Any], result: Result, criteria: Criteria | None, *, detailed: bool = True
 ) -> tuple[Grid, Report]:
-    """Return the grid of `member`, whose provenance gets the command and the verdict, and its report.
+    """Return the grid of `member` and its report; the grid's metadata get the command and the verdict.
 
     With `detailed`, the report on a multi-block grid has angles and growth of its lines. Raises InputError if
-    a gate names a quantity that the cells do not have.
+    a quality limit names a quantity that the cells do not have.
     """
     solution, grid = result.solution, result.solution.grid
     counts = grid.blocks[0].counts if len(grid.blocks) == 1 else (None, None)

@@ -34,7 +34,7 @@ def hide_warnings() -> None:
 
 
 def check() -> None:
-    """If a signal came, raise its exception again, since the first one may have been lost."""
+    """Raise the exception of a received signal once more, in case Python dropped it."""
     if _asked:
         raise _asked[-1]
 

@@ -78,7 +78,7 @@ class BodyMap:
         return np.hypot(points[..., 1] - self.body.y, points[..., 2])
 
     def steepness(self, places: Floats) -> Floats:
-        """Return the angle (...), in radians, of the cross-section to the z axis at `places` (..., 3)."""
+        """Return angles (...) in radians between z and the body's cross-section, at `places` (..., 3)."""
         return np.minimum(places[..., 1], np.pi - places[..., 1])
 
     def places(self, points: Floats, near: Floats | None = None) -> Floats:

@@ -67,13 +67,13 @@ class LevelPlan:
 def planned(
     space: BodyMap, holes: Sequence[Sequence[Sequence[Hole]]], first: float, growth: float
 ) -> LevelPlan:
-    """Return numbers of cells that suit the sections of wings on all given levels.
+    """Return numbers of cells that suit the sections of wings on all given surfaces around the body.
 
     Parameters
     ----------
     space : map around the body.
-    holes : sections of wings, indexed by column from nose to tail, by wing in the column, and by level. The
-        first level is the body. A column has one wing, or a wing and the fin above it.
+    holes : sections of wings, indexed by column from nose to tail, by wing in the column, and by surface, the
+        body first. A column has one wing, or a wing and the fin above it.
     first, growth : height of first cells, and largest growth ratio.
     """
     plans, levels = zip(*(planned_column(each, first, growth) for each in holes), strict=True)
@@ -170,7 +170,7 @@ def _from_tail(nodes: Floats, length: float) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class BodyEnd:
-    """The part of the grid at nose or tail; s and theta (`BodyMap`) of its nodes are equal on all levels."""
+    """The part of the grid of a surface around the body that covers its nose or tail."""
 
     theta: Floats  # (n,) angles of the lines from the pole, the tip of nose or tail
     core: PoleCore  # block that covers the pole, in a plane with polar coordinates s, theta
@@ -205,10 +205,10 @@ class BodyEnd:
         return begin, np.full(len(side), self.step)
 
     def patches(self, points: Points, side: Floats, last: Floats) -> tuple[Floats, Floats]:
-        """Return two patches (ni, nj, 3): rows from core to `side` (n, 3), and the core at the pole.
+        """Return two patches (ni, nj, 3): rows that end at `side` (n, 3), and the core around the tip.
 
-        `last` (n,) are the lengths in s of the cells at the side. Nodes are s, theta, zeta (`BodyMap`), where
-        s is measured from the pole. `points` maps nodes to x, y, z.
+        `last` (n,) are the lengths of the cells at the side. Nodes are s, theta, zeta (see `BodyMap`), where
+        s is measured from the tip of nose or tail. `points` maps nodes to x, y, z.
         """
         begin, first = self._begin(side)
         lines = lines_between(points, begin, side, (first, last), self.cells)

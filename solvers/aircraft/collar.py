@@ -64,10 +64,10 @@ def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
 
 
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
-    """Return at which nodes of a section `root` lines to the corners of the rectangle `box` begin.
+    """Return from which nodes of a wing's section lines should lead to the corners of the rectangle `box`.
 
-    The result is a distance in nodes from the middle of the trailing edge, and a distance from the nose. Both
-    are at least `fewest`. They are such that cells on both sides of a corner have similar lengths.
+    The first number is the distance in nodes from the middle of the trailing edge, the second the distance
+    from the nose. Both are at least `fewest`. Cells on both sides of a corner then have similar lengths.
     """
     normals, half = _normals(root), (len(root) - 1) // 2
     tried = np.arange(fewest, half // 3 + 1)
@@ -88,7 +88,7 @@ def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
 
 
 def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]:
-    """Return cell lengths on the rear and front side of a rectangle; `corners` is from `corner_nodes`."""
+    """Return the cell lengths on a rectangle's rear and front side; `corners` is from `corner_nodes`."""
     edge, nose = corners
     return (box.high - box.low) / (2 * edge), (box.high - box.low) / (2 * nose)
 

@@ -45,7 +45,7 @@ class Hole:
 
     @cached_property
     def box(self) -> Rectangle:
-        """Rectangle around the section, in physical lengths."""
+        """Rectangle around the section of the wing, in lengths in space."""
         return rectangle(self.section, self.within, self.scale)
 
     @property
@@ -174,7 +174,7 @@ class CollarLevel:
 
     @cached_property
     def beside(self) -> tuple[float, float]:
-        """Physical lengths of the first cells below and above the collar."""
+        """Lengths in space of the first cells below and above the rectangle around the wing."""
         outer, half = self.ring[:, -1, 1], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
         corners = (half + nose, len(outer) - 1 - edge), (half - nose, edge)
@@ -189,7 +189,7 @@ class CollarLevel:
 
     @cached_property
     def low_and_top(self) -> tuple[Floats, Floats]:
-        """Theta of the nodes from keel to rectangle (around the collar), and from rectangle to crown."""
+        """Theta of the nodes below the rectangle around the wing, and of the nodes above it."""
         out = []
         for cells, way, step in zip(
             (self.plan.low, self.plan.top), self.hole.bands, self.beside, strict=True
@@ -203,7 +203,7 @@ class CollarLevel:
 
     @property
     def across(self) -> tuple[Floats, Floats]:
-        """Ascending theta of the nodes on the front and on the back of the rectangle around the section."""
+        """Ascending theta of the nodes on the front and on the back of the rectangle around the wing."""
         outer, half, rho = self.ring[:, -1, 1], (len(self.ring) - 1) // 2, float(self.hole.scale[1])
         edge, nose = self.plan.edge, self.plan.nose
         front = outer[half + nose : half - nose - 1 : -1] / rho
@@ -216,13 +216,13 @@ class CollarLevel:
 
     @property
     def long_sides(self) -> tuple[Floats, Floats]:
-        """Coordinate s of the nodes on the rectangle's lower and upper side, each from back to front."""
+        """Coordinate s of nodes on the lower, then the upper side of the rectangle, from back to front."""
         s, half = self.ring[:, -1, 0] / self.hole.scale[0], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
         return s[half + nose : 2 * half - edge + 1][::-1], s[edge : half - nose + 1]
 
     def collar(self) -> Floats:
-        """Return the collar's nodes (n, rows + 1, 2); half of them for a fin, from nose to trailing edge."""
+        """Nodes (n, rows + 1, 2) around the wing, or around half a fin from nose to trailing edge."""
         ring = self.ring / self.hole.scale
         if not self.hole.fin:
             return ring

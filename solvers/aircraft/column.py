@@ -43,14 +43,14 @@ _HALVINGS = 40  # steps of the bisection for the factor of the cells below a fin
 
 @dataclass(frozen=True, eq=False)
 class ColumnPlan:
-    """Numbers of cells of a column (from keel to crown, around wing and fin), the same on all levels."""
+    """Numbers of cells of the blocks around a wing and a fin, from the bottom of the body to its top."""
 
     collars: tuple[CollarPlan, ...]  # plans of the collars of the wing, of the fin, or of both, the fin last
     fin: bool  # whether there is a fin
 
     @property
     def patches(self) -> int:
-        """Number of patches of the column on a level."""
+        """Number of patches of the blocks on a surface around the body."""
         return 4 if len(self.collars) == 2 else 2 if self.fin else 3
 
     @property

@@ -23,10 +23,9 @@ _PART = 2.0 / 3.0  # a collar takes at most half of this fraction of the distanc
 def columns_of(
     space: BodyMap, wings: Sequence[WingLines], sections: Sequence[Floats]
 ) -> tuple[tuple[int, ...], ...]:
-    """Return the indices of wings, grouped in columns, from nose to tail.
+    """Return groups of wings, as indices, from nose to tail; a fin above a wing is in the wing's group.
 
-    A fin above a wing, or close to it along the body, is in the wing's column. `sections` are the sections
-    (k, n, 3) of each wing on k levels (surfaces around the body).
+    `sections` has for each wing its nodes (k, n, 3) on k surfaces around the body.
 
     Raises InputError if a fin is above two wings.
     """
@@ -56,7 +55,7 @@ Each = TypeVar("Each")
 
 
 def ordered(columns: Sequence[Sequence[int]], values: Sequence[Each]) -> list[Each]:
-    """Return `values`, given by the index of the wing, in the order of `columns` (groups of wings)."""
+    """Return `values`, one for each wing, in the order in which `columns` lists the indices of the wings."""
     return [values[k] for column in columns for k in column]
 
 
@@ -93,9 +92,9 @@ def _room(before: _Along, after: _Along, clear: float = _CLEAR) -> tuple[Floats,
 def holes_of(
     space: BodyMap, columns: Sequence[Sequence[WingLines]], sections: Sequence[Sequence[Floats]]
 ) -> tuple[tuple[tuple[Hole, ...], ...], ...]:
-    """Return the sections of wings (holes), by column from nose to tail, by wing, and by level.
+    """Return the sections of wings on k surfaces around the body, by column, by wing and by surface.
 
-    `sections` (k, n, 3) are the nodes around each wing on k levels.
+    `columns` are groups of wings from nose to tail. `sections` has the nodes (k, n, 3) around each wing.
 
     Raises InputError if a section meets the plane of symmetry, or if wings are too close to each other.
     """

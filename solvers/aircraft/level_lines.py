@@ -34,7 +34,7 @@ def lines_between(
 def ways_between(
     points: Points, begin: Floats, end: Floats, sizes: tuple[Floats, Floats]
 ) -> tuple[Floats, tuple[Floats, Floats]]:
-    """Return the physical lengths (n,) of lines, and of their end cells; parameters as in `lines_between`."""
+    """Return the lengths in space (n,) of lines and of their end cells; parameters as in `lines_between`."""
     _, arcs, ends = _measured(points, begin, end, sizes)
     return arcs[:, -1], ends
 

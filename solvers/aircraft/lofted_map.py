@@ -21,7 +21,7 @@ _POLE = 1e-4  # distance from nose or tail, in body lengths, within which normal
 
 
 class LoftedMap(BodyMap):
-    """The map from (s, theta, zeta) to the space around a lofted `body`; see `BodyMap`."""
+    """The map from coordinates (s, theta, zeta), defined in `BodyMap`, to the space around a lofted body."""
 
     body: LoftedBody
 
@@ -55,7 +55,7 @@ class LoftedMap(BodyMap):
         return np.stack([x, y, z], axis=-1).reshape(places.shape)
 
     def places(self, points: Floats, near: Floats | None = None) -> Floats:
-        """Return s, theta, zeta (`BodyMap`) (..., 3) of points (..., 3); Newton's method starts at `near`."""
+        """Return s, theta, zeta (..., 3), see `BodyMap`, of `points` (..., 3); `near` is a first guess."""
         wanted = points.reshape(-1, 3)
         at = (self._first_places(wanted) if near is None else near.reshape(-1, 3)).copy()
         steps = np.diag([_STEP * self.body.length, _STEP, _STEP])
@@ -78,7 +78,7 @@ class LoftedMap(BodyMap):
         return np.asarray(norms(self._around(places)))
 
     def steepness(self, places: Floats) -> Floats:
-        """Return the angle (...), in radians, of the cross-section to the z axis at `places` (..., 3)."""
+        """Return angles (...) in radians between z and the body's cross-section, at `places` (..., 3)."""
         around = np.abs(self._around(places))
         return np.asarray(arctan2(around[..., 1], around[..., 2]))
 

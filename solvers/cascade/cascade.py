@@ -65,7 +65,7 @@ class Cascade:
     share: float = 1.0
 
     def ending(self, near: tuple[float, float], centre: complex) -> Self:
-        """Return the cascade with other values of `near` and `centre`, and with its present layers."""
+        """Return the cascade with other `near` and `centre`, and with the layers that it has now."""
         return replace(self, near=near, centre=centre, marched=self.ring)
 
     @property
@@ -129,7 +129,7 @@ class Cascade:
 
     @cached_property
     def ring(self) -> Ring:
-        """The layers around the blade."""
+        """The layers around the blade, computed if they are not given."""
         if self.marched:
             return self.marched
         largest = self.blade.length / COLUMNS
@@ -137,7 +137,7 @@ class Cascade:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """By loop index, functions along the layers' outer edge that limit growth of cells (`Measures`)."""
+        """Functions that limit the growth of cells along the outer edge of the layers, by loop index."""
         return {BLADE: self.ring.along} if self.layers.limit else {}
 
     def factors_at(self, arcs: Floats) -> Floats:
@@ -167,7 +167,7 @@ class Cascade:
 
     @cached_property
     def passage(self) -> Passage:
-        """The passage around the blade or its layers."""
+        """The passage of the flow around the layers at the blade."""
         front = self.ring.front
         return Passage.around(front, self.left, *self.ends, self.name, self.near, self.centre)
 

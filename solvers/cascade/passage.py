@@ -149,9 +149,9 @@ def _crossings(polygon: Floats, x: float) -> Floats:
 
 
 def extended(layout: Layout, cut: Indices, passage: Passage, wall: Loop, rows: Sequence[Rows]) -> Layout:
-    """Return the layout with `rows` of cells attached at its boundary; its loop 0 becomes the blade's `wall`.
+    """Return the layout with `rows` of cells attached along its boundary; loop 0 becomes the blade's `wall`.
 
-    `cut` (k,) are the nodes on the lower side of the cut (where the passage repeats), from inlet to outlet.
+    `cut` (k,) are the nodes on the lower periodic boundary of the passage, from inlet to outlet.
     """
     mesh = layout.mesh
     count = len(mesh.nodes)

@@ -16,10 +16,10 @@ SWEEPS = 3  # over the corners, which influence each other a little
 
 
 def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> tuple[Floats, Floats]:
-    """Return for each corner the weights (n, corners) of the wall nodes, and a shift (corners,) of phi.
+    """Return weights (n, corners) and shifts (corners,) that make grid lines bisect the angles at corners.
 
-    phi is the coordinate along the wall in the strip. Nodes moved by weight times shift make the first line
-    at each corner bisect the corner's angle. `wall` (n,): nodes, counter-clockwise; `corners`: indices.
+    The shifts are along the wall. A node moves by the sum of all shifts, each multiplied by the node's
+    weight. `wall` (n,) are the wall nodes, counter-clockwise; `corners` are indices of nodes.
     """
     n, step = len(wall), 2.0 * np.pi / len(wall)
     between = np.subtract.outer(corners, corners) % n

@@ -79,9 +79,9 @@ def interpolation(eta: bytes) -> Floats:
 
 
 def modes(F: Any, xp: Any = np) -> Any:
-    """Return the Fourier modes (..., 2 MODES + 1) of samples F (..., n), k = 0, 1 .. MODES, -MODES .. -1.
+    """Return the Fourier modes (..., 2 MODES + 1) of periodic samples F (..., n); `xp` is numpy or torch.
 
-    Modes that n samples cannot resolve are zero. F is an array of numpy or torch; `xp` is that module.
+    They are in the order k = 0, 1 .. MODES, -MODES .. -1. Modes that n samples cannot resolve are zero.
     """
     n = F.shape[-1]
     c, kept = xp.fft.fft(F) / n, min(MODES, (n - 1) // 2)
@@ -96,10 +96,10 @@ def wavenumbers(like: Any = None, xp: Any = np) -> Any:
 
 
 def decay(k: Any, T: Any, eta: Any, xp: Any = np) -> tuple[Any, Any]:
-    """Return the factors (..., len(k), len(eta)) by which the modes k of wall and far field have decayed.
+    """Return how much Fourier modes k of wall and far field decay up to eta, each (..., len(k), len(eta)).
 
-    They are sinh(kT(1-eta))/sinh(kT) and sinh(kT eta)/sinh(kT), computed without overflow. T, the
-    height of the strip, is a number or has the shape (..., 1, 1).
+    The factors are sinh(kT(1-eta))/sinh(kT) and sinh(kT eta)/sinh(kT). T, the height of the strip, is a
+    number or has the shape (..., 1, 1).
     """
     k, exp = abs(k)[:, None], functions_of(xp).exp
     flat = k == 0

@@ -24,10 +24,10 @@ FLAT = 1e-9  # largest deviation from a line or plane, over its extent, of a sid
 class Field:
     """Displacements, interpolated from boundary nodes (sources) by inverse-distance weighting.
 
-    Source k moves from w_k to w_k' and rotates by R_k, or stays. The displacement at x is the weighted mean
-    of d_k(x) = w_k' + R_k (x - w_k) - x over all sources. The weights are A_k (r^-2 + near² r^-4) in the
-    plane and A_k (r^-3 + near² r^-5) in three dimensions. A_k is the length or area that belongs to source k,
-    r the distance from its old position to x. Within the distance `near`, the second term is larger.
+    Source k moves from w_k to w_k' and turns by the rotation R_k, or is fixed. The displacement at x is the
+    weighted mean of d_k(x) = w_k' + R_k (x - w_k) - x over all sources. The weights are A_k (r^-2 + near²
+    r^-4) in the plane and A_k (r^-3 + near² r^-5) in three dimensions. A_k is the length or area that belongs
+    to source k, r the distance from w_k to x. At r < `near`, the second term is larger.
     """
 
     sources: Indices  # (k,) node indices of the sources
@@ -130,7 +130,7 @@ def _near(moved: Floats, fixed: Floats) -> float:
 
 
 def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
-    """Return the unit normal (d,) of a side; None if it is bent before or after nodes move `there` (n, d)."""
+    """Return the unit normal (d,) of a side; None if it is not flat, now or at nodes `there` (n, d)."""
     nodes, after = (each[piece.numbers.ravel()] for each in (table.nodes, there))
     centre = nodes.mean(axis=0)
     _, size, ways = singular_values(nodes - centre)

@@ -44,10 +44,11 @@ class Factors:
 
 @dataclass(frozen=True, eq=False)
 class Controls:
-    """Control functions φ and ψ, stored as logarithms l of the ratios of neighbouring edge lengths.
+    """Control functions φ (along ξ) and ψ (along η) of Winslow's equations, stored as logarithms.
 
-    The equations are α (x_ξξ + φ x_ξ) - 2β x_ξη + γ (x_ηη + ψ x_η) = 0. On a level with step h in ξ, φ =
-    -(2/h) tanh(h l/2), which is exact for geometric growth (``stencil.h``).
+    The equations are α (x_ξξ + φ x_ξ) - 2β x_ξη + γ (x_ηη + ψ x_η) = 0, with the metric coefficients α, β, γ.
+    The logarithm l of the ratio of neighbouring edges along ξ gives φ = -(2/h) tanh(h l/2) on a multigrid
+    level with step h in ξ.
     """
 
     phi: Factors  # logarithm of the ratio of neighbouring edge lengths along ξ and along η

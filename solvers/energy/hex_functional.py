@@ -13,16 +13,16 @@ class HexWeights:
     """Weights of a functional of hexahedra: `shape` q, `smoothness` β, `power` p (1 or 2; 0 selects cubes).
 
     u, v, w are the edges at a corner of a cell, each divided by its target length, and J = det(u, v, w). l
-    are the lengths of the edges of one family. The functional of angles is::
+    are the lengths of all edges along one of the three index directions. Δ_e is the difference of neighbours
+    in direction e, and N the number of cells. The functional of angles is::
 
         E = mean over the corners of cells of
                 (1-q) (|u × v|² + |v × w|² + |w × u|²) / (3J) + q (|u|² |v|² |w|² / J²)^p
-          + β mean of the squares of N^(1/3) Δ_e log l, all three families, along all three directions e
+          + β mean of the squares of N^(1/3) Δ_e log l, for all three l, along all three directions e
 
     Inside six faces, target lengths are the mean lengths along each direction. In given blocks they are near
-    the given lengths. The functional of cubes has q = 1 and β = 0. Its integrand is the inverse of the mean
-    ratio of T, the Jacobian matrix of a cell's trilinear map with columns u, v, w divided by a common
-    length::
+    the given lengths. The functional of cubes has q = 1 and β = 0. T is the Jacobian matrix of a cell's
+    trilinear map, divided by a length of the cell::
 
         E = mean over cells of the integral of |T|² / (3 det(T)^⅔)
 

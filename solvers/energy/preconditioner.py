@@ -41,7 +41,7 @@ class Descent:
         """Minimise; return the functional, the smallest corner Jacobian and the number of iterations.
 
         The iteration ends if nodes move by less than `still` cell sizes, or after `most` iterations.
-        `epsilon` (an area) regularises Jacobians. `relief`: see `relief_of`. `listener` gets the
+        `epsilon` (an area) regularises Jacobians. `relief` is the result of `relief_of`. `listener` gets the
         number of the iteration, value and gradient norm, before the first and after each iteration.
         """
         return self.minimiser.run(self._z, *self._terms, epsilon, relief, still, REACH_CELLS, most, listener)

@@ -42,19 +42,19 @@ def optimise(
     """Return the mesh with its nodes at the minimum of the functional; wall nodes slide along their walls.
 
     Periodic partners move together. Cells without free nodes are ignored, but must not be folded. The
-    smoothness term compares the logarithms of the lengths of neighbouring edges, along and across grid lines,
-    also across block interfaces.
+    smoothness term compares the lengths of neighbouring edges, along and across grid lines, also across block
+    interfaces.
 
     Parameters
     ----------
     iterations : greatest number of iterations; iterations of untangling are not counted.
     held : (n,) mask of fixed nodes; corners (`Places.cells` > 0) are fixed anyway.
-    aspects : (m,) target ratios of a cell's sides 1-2 and 0-3 to its sides 0-1 and 3-2.
+    aspects : (m,) for each cell, target length of its sides 1-2 and 0-3 divided by that of sides 0-1 and 3-2.
     targets : (e,) target lengths of `mesh.edges` in any unit, because only ratios of neighbours matter.
     tolerance : the iteration ends after three consecutive relative gains below a hundredth of this.
     turning : angle in radians by which a wall may turn along one edge without penalty.
     weights : w and β of the functional if there are `targets` or if growth is penalised.
-    growth : weight of a penalty for growth ratios of edges; logarithm of the greatest ratio without penalty.
+    growth : weight of a penalty for growth ratios, and the logarithm of the largest ratio without penalty.
     """
     problem = problem_of(mesh, held, aspects, targets, turning)
     if problem is None:

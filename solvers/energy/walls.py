@@ -34,10 +34,10 @@ class Walls:
 
 
 def walls_of(mesh: QuadMesh, fixed: Bools, tied: Bools) -> Walls | None:
-    """Return the walls of a mesh; nodes that have overtaken others along a wall are moved back.
+    """Return the walls of a mesh, with nodes in order along each wall; None if fixed nodes are not in order.
 
     `fixed` (n,) is the mask of fixed nodes. `tied` (n,) is the mask of nodes on periodic sides, which are no
-    walls. Return None if fixed nodes are not in order.
+    walls. Other nodes that are not in order are moved along their wall.
     """
     places = mesh.places
     on = (places.loop >= 0) & ~tied

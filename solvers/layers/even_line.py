@@ -97,7 +97,7 @@ class PlaceLinks:
     rest: Floats
 
     def values(self, places: Floats) -> Floats:
-        """Return f0 u0 + f1 u1 + rest (p,) of each condition, for positions u = `places`."""
+        """Return the left sides f0 u0 + f1 u1 + rest (p,) of the conditions, for positions u = `places`."""
         return np.asarray((self.factors * places[self.pairs]).sum(axis=1) + self.rest)
 
 

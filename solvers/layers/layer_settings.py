@@ -50,9 +50,9 @@ class LayerSettings:
         return cls(first, math.exp(NOMINAL * math.log(limit)), limit=limit, **others)
 
     def at(self, names: Collection[str]) -> Self:
-        """Return the settings for one wall with layers, whose parts have the given `names`.
+        """Return the settings for a single wall, which consists of parts with the given `names`.
 
-        Raises InputError if parts of the wall have different heights.
+        Raises InputError if these parts have different first-cell heights.
         """
         if not self.heights:
             return self

@@ -87,10 +87,7 @@ class SizeMetric:
         return self.length(0.5 * (first + second), second - first)
 
     def gradual(self, mesh: QuadMesh, sweeps: int = SWEEPS) -> Floats:
-        """Return the target lengths (e,) of the edges of a mesh, smoothed over neighbouring edges.
-
-        Without smoothing, target lengths would jump halfway between walls.
-        """
+        """Return the target lengths (e,) of the edges of a mesh, smoothed over neighbouring edges."""
         return _evened(self.edges(mesh), mesh, sweeps)
 
 

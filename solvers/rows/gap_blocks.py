@@ -20,7 +20,7 @@ _ROUNDS = 4
 
 @dataclass(frozen=True, eq=False)
 class GapEnds:
-    """Nodes inside the outline of the blade, at the lower and at the upper end of a gap at hub or casing."""
+    """Nodes that fill the outline of the blade at both ends of a gap between the blade and hub or casing."""
 
     fill: GapFill  # numbering of the nodes; those of the outline come first
     # low, high: (n, 2) s and theta at the lower and at the upper end
@@ -74,7 +74,7 @@ def gap_ends(
 def gap_blocks(
     row: Row, ends: GapEnds, around: Indices, outline: Floats, zone: Zone, growth: float
 ) -> GapBlocks:
-    """Return the blocks of a gap, with nodes between its ends.
+    """Return the blocks in the gap between the blade and hub or casing, given their nodes at both ends.
 
     `around` (k,) are the indices of the blade's nodes in a section, clockwise. `outline` (levels, k, 3) has
     s, theta, h (see `Channel`) of these nodes on each level along the span.

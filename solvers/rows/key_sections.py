@@ -86,7 +86,7 @@ class KeySection:
 
 @dataclass(frozen=True, eq=False)
 class Beginning:
-    """The middle section of a row, and the data from which all other key sections are made."""
+    """The middle section of a blade row, and the data from which the grids of all other sections are made."""
 
     plan: SectionPlan  # data that all sections share
     columns: Sequence[LayerColumns | None]  # columns of the layers of each section; None for the middle one
@@ -141,7 +141,7 @@ def _begun(plan: SectionPlan, planes: Sequence[SectionPlane], section: KeySectio
 
 
 class NextSections:
-    """Makes key sections one after another with the same blocks, each from the previous section."""
+    """Makes the grids of sections of a row one after another, each from the grid of the previous section."""
 
     def __init__(self, plan: SectionPlan, section: KeySection) -> None:
         self.plan = plan

@@ -31,7 +31,7 @@ _TRIES, _NEAR = 4, 0.03  # largest number of choices of counts; sufficient relat
 
 
 def coarse_section(plane: SectionPlane, *, early: bool = True) -> Layout:
-    """Return the coarse blocks of a section; with `early`, corners of the blade have nodes already.
+    """Return a coarse block layout of a section; `early` first places nodes at corners of the blade.
 
     Raises InputError if there is no room for inlet or outlet; NoValidGridError if cells are folded.
     """
@@ -45,7 +45,7 @@ def middle_section(
 
     Parameters
     ----------
-    longest : by loop index, the greatest length in any section of the straight rows at inlet and outlet.
+    longest : by loop index, length of the straight rows at inlet and outlet, the greatest of all sections.
     coarse : result of `coarse_section`; None: it is computed.
 
     Raises NoValidGridError if cells are folded.

@@ -36,12 +36,12 @@ class Rise:
 
     @classmethod
     def of(cls, row: Row, zone: Zone, blade: Zone, around: SpanLines, lines: SpanLines) -> Self:
-        """Return the displacements of the layers next to the gap `zone`.
+        """Return the displacements of the layers next to a gap between the blade and hub or casing.
 
         Parameters
         ----------
-        row, blade : the row, and the zone of the blade.
-        around : coordinate u around the blade of the k columns, as functions of the height.
+        row, zone, blade : the row, and the height ranges (zones) of the gap and of the blade.
+        around : positions u around the blade of the k columns, as functions of the height.
         lines : s and theta of all k * (rows + 1) nodes of the columns, as functions of the height.
         """
         end, up, width = (blade.high, 1.0, row.tip_gap)

@@ -169,9 +169,9 @@ class SectionPlane:
         return f"section at {100.0 * self.height:.3g} % of the span, {along}"
 
     def shares(self, points: Floats) -> Floats:
-        """Return how far along the passage points (n, 2) are, as shares (n,).
+        """Return the positions (n,) of `points` (n, 2) along the passage.
 
-        A share is -1 at the inlet, 0 at the leading edge, 1 at the trailing edge, 2 at the outlet.
+        A position is -1 at the inlet, 0 at the leading edge, 1 at the trailing edge, 2 at the outlet.
         """
         return np.interp(points[:, 0], self._stations, _SHARES)
 

@@ -21,7 +21,7 @@ def key_heights(count: int) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class SpanLines:
-    """n polynomials in the height, 0 to 1, each with k Chebyshev coefficients: an array (k, n, ...)."""
+    """n polynomials in the height (0 to 1), given by their k Chebyshev coefficients (k, n, ...)."""
 
     coefficients: Floats
 
@@ -48,7 +48,7 @@ class SpanLines:
 
 
 def slopes_at_keys(values: Floats) -> Floats:
-    """Return the derivatives (k, n, ...) of polynomials with `values` (k, n, ...) at the k `key_heights`."""
+    """Return derivatives (k, n, ...) of polynomials at the k `key_heights`, from their values there."""
     return _times(_slopes(len(values)), values)
 
 

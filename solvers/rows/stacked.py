@@ -97,7 +97,7 @@ class StackedRow:
         return values.reshape(*self.columns.shape, 3)[:, :2]
 
     def nodes(self) -> tuple[RowNodes, list[Callable[[], None]]]:
-        """Return the nodes, and tasks to be run later, which fill in x, y, z of the nodes in layers.
+        """Return the nodes, and functions still to be called, which compute x, y, z of the nodes in layers.
 
         The nodes of the second periodic side are not computed.
         """

@@ -45,9 +45,10 @@ class Around:
         return 2 * self.cells + self.base + 1
 
     def law(self, height: float, length: float, nose: float | None = None) -> Callable[[Floats], Floats]:
-        """Return the node distribution from base to nose on a side; `length` and base `height` are in chords.
+        """Return the node distribution along a side of a section, from the trailing edge to the nose.
 
-        Raises InputError if the cell lengths are impossible with this number of nodes.
+        `height` of the trailing edge, cell `length` there and cell length at the `nose` are in chords. Raises
+        InputError if these lengths are impossible with this number of nodes.
         """
         return TanhLaw.fitted(self.cells, *self.ends(height, length, nose))
 

@@ -150,9 +150,9 @@ class Cap:
         return middle + CORE * across, middle - CORE * across, np.hypot(*across.T)
 
     def connections(self, n: int, ring: int, core: int) -> tuple[Connection, ...]:
-        """Return the connections of the ring, with `n` nodes around, to itself and to the core.
+        """Return the connections that close a wing tip: of the ring to itself, and of the ring to the core.
 
-        `ring` and `core` are the indices of their blocks.
+        `ring` and `core` are the indices of these blocks; `n` is the number of nodes around the ring.
         """
         m, half = self.short, (n - 1) // 2
         whole = ((0, self.rows),)

@@ -18,7 +18,7 @@ Ranges = list[tuple[int, int]]  # first and end index of nodes along each direct
 
 
 def check_corners(faces: SixFaces) -> None:
-    """Raise InputError, with the node, if `faces` fold a cell wherever the inner nodes are.
+    """Raise InputError, with the node, if no position of the inner nodes leaves all cells valid.
 
     At an edge of the volume, two faces alone determine corners of cells. Elsewhere, the faces next to an
     inner node may leave no valid position for it (`closed_place`).
@@ -52,7 +52,7 @@ def check_corners(faces: SixFaces) -> None:
 
 
 def check_hand(faces: SixFaces) -> None:
-    """Raise InputError if the cells at all eight corners of the volume are left-handed."""
+    """Raise InputError if a volume is left-handed, which means at all eight of its corners."""
     steps = [np.diff(np.stack(faces.edges_along(axis)), axis=1)[:, [0, -1]] for axis in range(3)]
     places = np.array(list(np.ndindex(2, 2, 2))).T
     edges = []

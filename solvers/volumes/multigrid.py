@@ -53,7 +53,7 @@ class Level:
             winslow_smooth(x, self.right if forced else None, factor, self.threads, self.room)
 
     def norm(self, x: Floats, forced: bool) -> float:
-        """Store the residual of x (3, ni, nj, nk), with a right-hand side if `forced`; return its norm."""
+        """Store the residual of x (3, ni, nj, nk); return its norm. `forced`: with the right-hand side."""
         right = self.right if forced else None
         return float(np.sqrt(winslow_residual(x, right, self.residual, self.threads, self.room)))
 

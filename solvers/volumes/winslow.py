@@ -24,11 +24,11 @@ def winslow(faces: SixFaces, *, tol: float | None = None, max_cycles: int | None
 
     ``a11 x_11 + a22 x_22 + a33 x_33 + 2 (a12 x_12 + a13 x_13 + a23 x_23) = 0``, with the adjugate a of the
     metric, is solved by central differences and multigrid. Cells can fold where walls are re-entrant. Cycles
-    end when they change nodes by less than the discretisation error, or when the residual is `tol` times its
-    value for the transfinite interpolation. Winslow, J. Comput. Phys. 1 (1966) 149-172.
+    end when they change nodes by less than the discretisation error, or when the residual is `tol` times the
+    residual of the transfinite interpolation. Winslow, J. Comput. Phys. 1 (1966) 149-172.
 
-    Raises InputError if the faces fold cells wherever inner nodes are, or if a setting is not positive.
-    Raises SolverError if cycles diverge.
+    Raises InputError if the faces alone make cells folded, or if a setting is not positive. Raises
+    SolverError if cycles diverge.
     """
     check_tolerances(tol, max_cycles)
     check_corners(faces)

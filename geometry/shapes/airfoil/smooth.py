@@ -34,9 +34,8 @@ _HEAVIER = 2.0  # factor of the weight of an outlier in each round
 def smooth_ring(section: CleanSection, nose_radius: float, limit: float) -> tuple[Floats, float]:
     """Return the points (n, 2) of a section, moved to splines within `limit`, and the largest displacement.
 
-    Corners are kept. A base is closed if it is narrower than `limit`, or if noise has swapped its ends. Where
-    noise could close the section, it stays at least as thick as a wedge. Raises InputError: SciPy is not
-    installed.
+    Corners are kept. A trailing edge is closed if it is thinner than `limit`, or if noise has swapped its
+    ends. The section keeps a least thickness. Raises InputError: SciPy is not installed.
     """
     unsmoothed = np.concatenate([section.points, section.points[: 0 if section.blunt else 1]])
     points = _closed(unsmoothed, limit)

@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 def wall_arcs(body: Airfoil, ni: int, sampling: Sampling) -> Floats:
     """Return the arc lengths (ni,) of the wall nodes, from 0 to the length of the curve.
 
-    The spacing ``conformal`` has equal angles of the conformal map (`geometry.conformal.spacing`). ``tanh``
-    and ``auto`` stretch each side between its end cells. ``cosine`` is ``tanh`` if a cell size is given or
-    the edge is blunt. ``curvature``: see `geometry.spacing.size_field`. `le_spacing` and `te_spacing`
-    are met within 1 %. Raises InputError: too few nodes, in general or for these cell lengths.
+    With the spacing ``conformal``, nodes have equal angles in a conformal map to the circle. ``tanh`` and
+    ``auto`` stretch each side between its end cells. ``cosine`` is ``tanh`` if a cell size is given or the
+    edge is blunt. ``curvature``: see `geometry.spacing.size_field`. `le_spacing` and `te_spacing` are met
+    within 1 %. Raises InputError: too few nodes, in general or for these cell lengths.
     """
     least = 7 if body.half_base else 5
     if ni < least:

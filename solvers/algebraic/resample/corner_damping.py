@@ -21,7 +21,7 @@ NEAR, FAR = 4.0, 10.0
 
 
 def openings(z: Any, xp: Any) -> Any:
-    """Return how much splines are damped, 0 to 1, at each corner (.., 2, 2) of planar grids.
+    """Return the damping factors (.., 2, 2) of splines, 0 to 1, at the four corners of planar grids.
 
     `z` (.., m, n) are the nodes as complex numbers, an array of numpy or torch; `xp` is that module.
     """

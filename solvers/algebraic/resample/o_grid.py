@@ -48,7 +48,7 @@ def refine_around(coarse: Floats, boundary: Boundary) -> Floats:
 
 
 def along_lines(z: Any, nj: int, xp: Any = np) -> tuple[Any, Any]:
-    """Return nj nodes (..., nj) on each line of complex nodes `z` (..., n), and their arc-length fractions.
+    """Return nj nodes (..., nj) on a cubic curve through complex nodes `z` (..., n), and their arc fractions.
 
     `z` is an array of numpy or torch; `xp` is that module.
     """

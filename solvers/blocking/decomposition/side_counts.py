@@ -65,12 +65,12 @@ def suited(
     chords: Chords, counts: Indices, least: Indices, *, finer: int = 1, multiple: int = 1,
     fixed: Mapping[int, int] = _NONE, named: bool = True,
 ) -> Indices:  # fmt: skip
-    """Return the admissible cell counts of chords (rows of blocks), at least `least`, nearest to `counts`.
+    """Return cell counts of chords (rows of blocks) that satisfy all conditions and are nearest to `counts`.
 
-    Admissible counts are multiples of `multiple`, and give both sides of each periodic pair the same number
-    of cells. If `named`, sides with given cell counts get `multiple` times that count, divided by `finer`
-    (the factor of a later refinement) and rounded up or down. `fixed` prescribes the counts of some chords,
-    by index.
+    Counts are at least `least`, are multiples of `multiple`, and are equal on both sides of each periodic
+    pair. `fixed` prescribes the counts of some chords, by index. If `named`, a side with a given cell count
+    gets `multiple` / `finer` times this count, rounded up or down; `finer` is the factor of a later
+    refinement.
 
     Raises InputError if given counts contradict each other or are too small; SolverError if no counts are
     equal along periodic sides.

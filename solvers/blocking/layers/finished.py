@@ -41,7 +41,7 @@ def finished(layout: Layout, settings: LayerSettings, held: Bools, following: In
 def evened(
     layout: Layout, settings: LayerSettings, held: Bools | None = None, following: Indices = NO_PAIRS
 ) -> Layout:
-    """Return the layout with limited growth of its cells; `held` and `following` are as in `finished`."""
+    """Return the layout with growth ratios of cells limited; `held` and `following` are as in `finished`."""
     places = layout.mesh.places
     held = np.zeros(len(places.loop), dtype=bool) if held is None else held.copy()
     for number in layout.layers:

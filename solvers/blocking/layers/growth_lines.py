@@ -88,7 +88,7 @@ class GrowthLines:
         return np.asarray(log(modulus(after) / modulus(before)) + self.offset)
 
     def edges(self, z: Complexes) -> tuple[Complexes, Complexes]:
-        """Return the first and the second edges of all pairs, as complex vectors (k,); nodes are `z` (n,)."""
+        """Return the first and the second edge of each pair as complex vectors (k,), for nodes `z` (n,)."""
         return z[self.nodes[:, 1]] - z[self.nodes[:, 0]], z[self.nodes[:, 2]] - z[self.begins]
 
     def largest_at(self, mesh: QuadMesh, rows: list[Indices]) -> Floats:

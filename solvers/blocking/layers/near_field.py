@@ -32,8 +32,8 @@ GROWTH = 1.18  # of cells in rows to the far field
 class NearField:
     """A circle around the bodies, and the outer loop in polar coordinates about the circle's centre.
 
-    `angles` (n,) ascend over one turn. For each angle, `radii` (n,) and `arcs` (n,) are the radius and the
-    arc length of the outer loop.
+    `angles` (n,) ascend over one turn. `radii` (n,) are the distances of the outer loop at these angles,
+    `arcs` (n,) its arc lengths there.
     """
 
     circle: Loop

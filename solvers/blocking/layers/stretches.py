@@ -15,12 +15,12 @@ _LINES = ("symmetry", "other")
 
 @dataclass(frozen=True)
 class Stretch:
-    """A part of a loop that has layers. Each of its ends is a corner with a single cell.
+    """A part of a boundary loop that has layers; it begins and ends at corners, or is the whole loop.
 
     Parameters
     ----------
     loop : index of the loop.
-    first, last : indices of its start and end among the corners of the loop; equal for the whole loop.
+    first, last : indices of these two corners among the corners of the loop; equal for the whole loop.
     """
 
     loop: int
@@ -67,7 +67,7 @@ def layered_walls(domain: Domain, names: Collection[str] = ()) -> tuple[list[int
 
 
 def continued_notes(domain: Domain, names: Collection[str]) -> list[str]:
-    """Return a note for each wall whose layers continue along an axis or symmetry line (`layered_walls`)."""
+    """Return a note for each wall whose layers continue beyond its end, along an axis or symmetry line."""
     notes = []
     for number, loop in enumerate(domain.loops):
         walls = _with_layers(domain, number, names)

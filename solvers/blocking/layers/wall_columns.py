@@ -22,7 +22,7 @@ def wall_columns(loop: Loop, largest: float, sums: Sequence[float] = ()) -> Floa
     """Return the ascending arc lengths (n,) at which columns of layers start; each corner has a column.
 
     `largest` is the greatest distance between neighbouring columns. For each c in `sums`, columns are
-    symmetric: the mirror image of the column at arc length s is the column at c - s.
+    symmetric: if there is a column at arc length s, there is one at c - s.
     """
     arcs = np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs)
     arcs = distinct(np.append(arcs, _beside_corners(loop, largest)))

@@ -37,9 +37,9 @@ class WallRows:
     Parameters
     ----------
     loops : for each row, the index of the loop along which it goes.
-    across : (b, 2) index of the row that a block's lines from south to north cross, then of the row that its
-        lines from west to east cross; -1: no row. Refinement does not change these indices.
-    back : (b, 2) whether these lines lead from the outer edge of the row to the wall.
+    across : (b, 2) for each block, index of the row that its lines from south to north cross, and of the row
+        that its lines from west to east cross; -1: no row. Refinement does not change these indices.
+    back : (b, 2) whether these lines lead towards the wall.
     """
 
     loops: tuple[int, ...]
@@ -111,8 +111,8 @@ def with_wall_rows(
 ) -> tuple[Layout, WallRows]:
     """Return the layout with rows of quads added along `stretches` and around `sheets`, and these rows.
 
-    `stretches` are parts of loops, `sheets` indices of loops with a sharp edge. Blocks are symmetric about
-    `mirrors` if the quads are. Raises SolverError if lines of the mesh do not bound blocks.
+    `stretches` are parts of loops, `sheets` indices of loops with a sharp edge. `mirrors` are mirror lines of
+    the domain. Raises SolverError if lines of the mesh do not bound blocks.
     """
     mesh = layout.mesh
     rungs: list[Edge] = []  # an edge across each row, from wall to front

@@ -71,7 +71,7 @@ def march_graph(
 
     Parameters
     ----------
-    planes, in_plane : planes of symmetry (p), and masks (p, k): which of the k open edges are in each plane.
+    planes, in_plane : p planes of symmetry, and masks (p, k) of the k open edges that are in each plane.
     hollow : (n,) distances from concave edges (`meshonet.geometry.surface.hollows`).
     splay : ghost nodes beyond free edges are 1 + `splay` times as far away as the opposite neighbours.
     boost : additional smoothing at irregular nodes.

@@ -18,7 +18,7 @@ _FACING = 0.1  # largest net area that faces a plane of symmetry, as a fraction 
 
 
 class Symmetry(NamedTuple):
-    """Planes of symmetry, the mask `inside` (p, k) of the k open edges in each of p planes, and notes."""
+    """The p planes of symmetry of a surface, masks (p, k) of its k open edges that are in each, and notes."""
 
     planes: tuple[Plane, ...]
     inside: Indices

@@ -28,7 +28,7 @@ def picard(c: Tensor) -> Tensor:
 
 
 class Settled(torch.autograd.Function):
-    """Torch function from initial Fourier modes (batch, modes, LEVELS) to a solution of Winslow's equations.
+    """Torch function that solves Winslow's equations, starting at Fourier modes (batch, modes, LEVELS).
 
     The highest modes stay near the initial modes.
     """

@@ -38,7 +38,7 @@ class Task(nn.Module):
         """
 
     def differentiate(self, parts: Tensor, team: Team) -> None:  # noqa: ARG002 - for those who average themselves
-        """Compute the gradients of the parameters for the loss, which is the sum of its terms `parts`."""
+        """Compute the gradients of the loss, the sum of `parts`, with respect to the parameters."""
         parts.sum().backward()
 
     def validate(self) -> dict[str, float]:

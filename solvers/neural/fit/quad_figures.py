@@ -21,9 +21,9 @@ Grids = NDArray[np.complexfloating[Any, Any]]
 def held_out_figures(answers: Grids, base: Grids, winslow: Grids, variational: Grids) -> dict[str, Any]:
     """Return error measures of a network's grids `answers` (m, heads, n, n) against target grids (m, n, n).
 
-    Angles are judged by the greatest corner angle of a grid (``max``), and by the mean of the greatest angles
-    of its cells (``mean``). A gain is the network's improvement over Winslow's grids, divided by the
-    improvement of the variational grids. Domains whose Winslow grid has folded cells are left out.
+    ``max`` is the largest cell angle of a grid, ``mean`` the mean of each cell's largest angle. A gain is the
+    network's reduction of such an angle relative to Winslow's grids, divided by the reduction by variational
+    grids. Domains whose Winslow grid has folded cells are left out.
     """
     solved, best = angles(winslow), angles(variational)
     valid = solved[0] < 360.0

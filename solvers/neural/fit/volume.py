@@ -58,13 +58,13 @@ class VolumeTask(Task):
         self.to(device)
 
     def forward(self, rows: Tensor, step: int) -> Tensor:
-        """Return the terms of the loss over the geometries `rows`; lengths are relative to a geometry's size.
+        """Return the terms of the loss, averaged over the volumes with indices `rows`, scaled to unit size.
 
         ::
 
             loss = sum over both terms of exp(-s) L / 2 + s / 2     s: log of the term's variance, trained
             L_winslow = mean |sum_ij a_ij X_ij|^2                   a: adjugate of the metric
-            L_faces   = mean |X - U|^2                              U: nodes of the faces
+            L_faces   = mean |X - U|^2                              X: predicted nodes, U: nodes of the faces
         """
         rng = np.random.default_rng([self.seed, 1, step])
         inner = tensor(rng.uniform(-1.0, 1.0, (self.points[0], 3))).to(rows.device)

@@ -104,9 +104,9 @@ class WNO(AlongXi):
 
 @cache
 def wavelets(n: int, levels: int) -> Floats:
-    """Return the scaling functions, then the wavelets, of the last level: orthonormal and periodic.
+    """Return orthonormal periodic functions of the last level: the scaling functions, then the wavelets.
 
-    The array (2 n / 2^levels, n) has one function per row, with its values at n nodes; 2^levels divides n.
+    The array (2 n / 2^levels, n) has the values of one function per row, at n nodes; 2^levels divides n.
     """
     low = np.array(SCALING)
     high = low[::-1] * np.where(np.arange(low.size) % 2, -1.0, 1.0)

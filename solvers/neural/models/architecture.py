@@ -62,10 +62,10 @@ class Architecture:
         return points
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return the coordinates (batch, p, 2) of p points minus the coordinates of the base grid there.
+        """Return the model's corrections (batch, p, 2) of the base grid at p points.
 
-        `xp` is numpy or torch, `w` has trained and fixed arrays by name, `inputs` comes from `encode`, and
-        `places` from `seen`. For models that are defined only at the nodes of the training grids, `index`
-        (p,) has the indices of the points among these nodes.
+        `xp` is numpy or torch, `w` has all arrays of the model by name. `inputs` is the result of `encode`,
+        `places` the result of `seen`. For models that are defined only at the nodes of the training grids,
+        `index` (p,) has the indices of the points among these nodes.
         """
         raise NotImplementedError

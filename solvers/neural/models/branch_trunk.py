@@ -96,9 +96,9 @@ class MIONet(DeepONet):
 class PODDeepONet(Architecture):
     """DeepONet whose trunk is the proper orthogonal decomposition of the training grids.
 
-    ``(x, y) = mean + sum_k branch(s)_k * mode_k(xi, eta)``, evaluated on the nodes of the training grids; a
-    mode has x and y. Modes are scaled so that the branch's outputs are of the order of 1. Lu et al., CMAME
-    393 (2022) 114778, sections 3.1.4 and 3.1.6.
+    ``(x, y) = mean + sum_k branch(s)_k * mode_k(xi, eta)`` at the nodes of the training grids, where s are
+    points of the boundary. A mode has x and y. Modes are scaled so that the branch's outputs are of the order
+    of 1. Lu et al., CMAME 393 (2022) 114778, sections 3.1.4 and 3.1.6.
     """
 
     native: ClassVar[bool] = True

@@ -37,8 +37,8 @@ class FNO1D(AlongXi):
 def mix_modes(xp: Any, weight: Any, h: Any, modes: int, padding: int) -> Any:
     """Multiply the channels of each of the lowest Fourier modes of `h` (batch, n, width) by a matrix.
 
-    `weight` has complex matrices (modes, width, width, 2), or one (width, width, 2) for all modes; other
-    modes become 0. `padding` is the number of zeros that are appended first, since h is not periodic.
+    `weight` has one complex matrix per mode (modes, width, width, 2), or one (width, width, 2) for all modes.
+    Higher modes become 0. Before the transform, `padding` zeros are appended to h, which is not periodic.
     """
     n = h.shape[1]
     spectrum = xp.fft.rfft(h, n + padding, 1)

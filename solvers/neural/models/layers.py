@@ -39,7 +39,7 @@ def dense(xp: Any, w: Weights, name: str, h: Any, *, last: bool = False) -> Any:
 
 
 def products(trunk: Any, branches: Any) -> Any:
-    """Return the inner products (batch, p, 2) of trunk features (p, k) and branch features (batch, 2, k)."""
+    """Return the inner products (batch, p, 2) of features `trunk` (p, k) and `branches` (batch, 2, k)."""
     batch, two, k = branches.shape
     return (trunk @ branches.reshape(batch * two, k).T).reshape(-1, batch, two).swapaxes(0, 1)
 

@@ -100,7 +100,7 @@ def nearer(z: Any, unit: Any, xp: Any, around: bool = False) -> Any:
 
 
 def in_frame(z: Any, xp: Any) -> tuple[Any, Any]:
-    """Return complex grids `z` turned and scaled to area 1, and factors (batch, 1, 1) that undo this."""
+    """Return complex grids `z`, turned and scaled to area 1, and the inverse factors (batch, 1, 1)."""
     middle, factor = (value[:, None, None] for value in frame(z, xp))
     return times(z - middle, factor), factor.conj() / (factor.real**2 + factor.imag**2)
 

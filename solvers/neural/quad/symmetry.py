@@ -69,7 +69,7 @@ SEEN: Floats = np.stack([_seen(element) for element in ELEMENTS])  # (8, FEATURE
 
 
 def table(size: int) -> Integers:
-    """Return the indices (8, 8, size²) with which `convolution` takes the entries of kernels from weights w.
+    """Return the indices (8, 8, size²) of the weights w that are entries of the convolution kernels.
 
     There is a kernel for each pair of symmetries h, g of the square: K[h, g](p) = w[h⁻¹ g](h⁻¹ p).
     """
@@ -93,6 +93,6 @@ def lift(weight: Any, seen: Any) -> Any:
 
 
 def projection(weight: Any, elements: Any, xp: Any) -> Any:
-    """Return the matrix (2 heads, 8 in) of the equivariant last layer from `weight` (heads, 2, in)."""
+    """Return the matrix (2 heads, 8 in) of the equivariant last layer, made from `weight` (heads, 2, in)."""
     back = weight[:, None, :, :, None] * xp.moveaxis(elements, 0, -1)[:, :, None]
     return back.sum(2).reshape(2 * len(weight), -1) / ORDER

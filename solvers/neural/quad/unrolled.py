@@ -13,7 +13,7 @@ TURN = 2.0 * np.pi  # once around, the period of a strip
 
 
 def middles(walls: Any, xp: Any = np) -> Any:
-    """Return the centroids (batch,) of areas inside curves (batch, n), whose first node is not repeated."""
+    """Return the centroids (batch,) of the areas inside closed curves (batch, n) of complex nodes."""
     off = walls - walls[:, :1]  # near the origin, against cancellation
     ahead = xp.roll(off, -1, 1)
     cross = times(off.conj(), ahead).imag
@@ -55,13 +55,13 @@ def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any 
 
 
 def even(strips: Any, n: int, xp: Any = np) -> Any:
-    """Return strips with `n` equally spaced nodes on each line across `strips` (batch, m + 1, any number)."""
+    """Return `strips` (batch, m + 1, k) with `n` evenly spaced nodes on straight lines from side to side."""
     eta = xp.linspace(0.0, 1.0, n, dtype=strips.real.dtype, device=strips.device)
     return strips[:, :, :1] * (1.0 - eta) + strips[:, :, -1:] * eta
 
 
 def factors(strips: Any, xp: Any = np) -> Any:
-    """Return the factors (batch,) that scale strips (batch, m + 1, n) to area 1 per half period."""
+    """Return factors (batch,) that scale periodic `strips` (batch, m + 1, n) to area 1 per half period."""
     heights = (strips[:, :-1, -1] - strips[:, :-1, 0]).imag.mean(1)
     return 1.0 / xp.sqrt(0.5 * TURN * heights)
 

@@ -25,7 +25,7 @@ from meshonet.solvers.solution import Solution
 class StripOperator(Operator):
     """A trained network for airfoils; without weights, Winslow's solver starts from the harmonic grid.
 
-    `basis` (Q, LEVELS - 2) and `scale` are the values used in training (see `StripTargets`).
+    `basis` and `scale` convert the network's outputs to corrections of that grid (see `StripTargets`).
     """
 
     weights: Mapping[str, Floats] = field(default_factory=dict)  # of the network, float64

@@ -53,7 +53,7 @@ class VolumeNetwork:
     weights: Weights
 
     def nodes(self, faces: SixFaces) -> Floats:
-        """Return the predicted nodes (ni, nj, nk, 3). Raises InputError: a geometry without a network."""
+        """Return predicted nodes (ni, nj, nk, 3). Raises InputError: no network for this volume."""
         k = self._which(faces)
         net = {key: value[k : k + 1] for key, value in self.weights.items() if key.startswith("net/")}
         axes = [np.linspace(-1.0, 1.0, n) for n in faces.counts]

@@ -54,7 +54,7 @@ class BaseComplex:
         return edge, first, self.chord[edge[first]]
 
     def moved(self, mesh: QuadMesh) -> Self:
-        """Return the same blocks with the node positions of another `mesh` of the same quads."""
+        """Return the same blocks with the nodes of `mesh`, which has the same quads."""
         moved = replace(self, mesh=mesh)
         if "sides" in self.__dict__:
             moved.__dict__["sides"] = self.sides

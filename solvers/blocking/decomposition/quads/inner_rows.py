@@ -22,7 +22,7 @@ HalfEdges = dict[tuple[int, int], tuple[int, int]]
 
 
 def half_edges(mesh: QuadMesh) -> HalfEdges:
-    """Return, for each directed edge (a, b), the index of its quad and the position of a in it, 0 to 3."""
+    """Return for each directed edge (a, b) the index of the quad on its left, and a's number (0-3) in it."""
     return {(q[i], q[(i + 1) % 4]): (k, i) for k, q in enumerate(mesh.quads.tolist()) for i in range(4)}
 
 
@@ -107,7 +107,7 @@ def _left_of(
 
 
 def corner_row(mesh: QuadMesh, corner: int, farthest: int) -> QuadMesh | None:
-    """Return the mesh with a row of quads around a corner of only one quad; None if impossible.
+    """Return the mesh with an additional row of quads around a corner with one quad; None if impossible.
 
     The row is `farthest` quads away from the corner, or fewer if irregular nodes are in the way.
     """

@@ -44,7 +44,7 @@ class Trails:
         return self._on_piece(self.vertex == vertex, 0.0)
 
     def at_edge(self, face: int, edge: int, part: float) -> tuple[int, float]:
-        """Return the index of the trail along a wall edge, and its length up to a `part` (0 to 1) of it."""
+        """Return the trail along a wall edge of a triangle, and its length up to a `part` of the edge."""
         return self._on_piece((self.face == face) & (self.edge == edge), part)
 
     def _on_piece(self, which: Bools, part: float) -> tuple[int, float]:
@@ -54,7 +54,7 @@ class Trails:
         return trail, float(start + part * (stop - start))
 
     def locate(self, trail: Indices, length: Floats) -> tuple[Indices, Floats]:
-        """Return the pieces (q,) at positions `length` (q,) on trails, and how far along each, 0 to 1."""
+        """Return pieces (q,) at distances `length` (q,) along trails, and the positions in them, 0 to 1."""
         ends = self.length[self.first[1:] + np.arange(len(self.first) - 1)]
         offset = np.append(0.0, np.cumsum(ends))
         owner = np.repeat(np.arange(len(ends)), np.diff(self.first))
@@ -75,7 +75,7 @@ class Trails:
 
 
 def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, rays: int) -> Trails:
-    """Return the trails of rays, from the arrays `pieces` (p, 3) and `lines` (p, 5) of `trace_rays`."""
+    """Return the lines that `trace_rays` has traced as `pieces` (p, 3) and `lines` (p, 5)."""
     order = np.argsort(pieces[:, 0], kind="stable")
     pieces, lines = pieces[order], lines[order]
     count = np.bincount(pieces[:, 0], minlength=rays)
