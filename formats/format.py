@@ -67,7 +67,7 @@ class Format:
     suffix_options: Mapping[str, str] = field(default_factory=dict)
 
     def file_at(self, path: str) -> str:
-        """Return the file to write for a user's `path`; for formats that fill folders, it is in that folder.
+        """Return the file to write for a user's `path`; if the format fills folders, `path` may be one.
 
         >>> case = Format("openfoam", (".foam",), "", fills_folder=True)
         >>> case.file_at("runs/first"), case.file_at("runs/first/case.foam")
@@ -157,7 +157,7 @@ def size_of(sample: Boundary | Grid) -> str:
 
 
 def size_remedy(own: str, first: str) -> str:
-    """Return advice for giving a sample of the size `own` the size `first`; both are texts of `size_of`."""
+    """Return advice to make the size of a sample, `own`, that of the `first`; texts as from `size_of`."""
     kinds = {size.partition(" of ")[0].rpartition(" ")[2] for size in (own, first)}
     if "blocks" not in kinds:
         return "set {res} and {topology}"

@@ -29,9 +29,9 @@ def whole_file(destination: str, *, make_folder: bool = False, beside: bool = Fa
 
     The temporary file is in the folder of the destination and is renamed in one step. If the destination is
     ``-`` (standard output), a device or a pipe, the content is copied at the end. After any exception the
-    temporary file is removed and the destination is unchanged. `make_folder` makes a missing folder. `beside`
-    means that other files are written next to the destination, which must not be a stream then. Raises
-    InputError if the destination is a folder, its folder missing or not writable, or the disk full.
+    temporary file is removed and the destination is unchanged. `make_folder` makes a missing folder. With
+    `beside`, other files are written next to the destination, which therefore must not be a stream. Raises
+    InputError if the destination is a folder, if its folder is missing or read-only, or if the disk is full.
 
     Examples
     --------

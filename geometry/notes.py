@@ -25,7 +25,7 @@ class ExactHeights(str):
 
 
 def departure_note(what: str, off: float, unit: str = "") -> str:
-    """Return a note: the smooth curve `what` is up to `off` away from the polygon through its points."""
+    """Return a note: the smooth curve `what` deviates by up to `off` from the polygon of its points."""
     lines = f"up to {off:.2g}{unit} away from straight lines between them"
     return f"{what} through the points, {lines}; give more points where it matters"
 

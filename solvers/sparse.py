@@ -54,7 +54,7 @@ class SparsePattern:
         return int(self.arrays[4][-1])
 
     def matrix(self, values: Floats) -> "SparseMatrix":
-        """Return the matrix whose entries have these `values` (m,); rows must have one unknown."""
+        """Return the matrix with the entries `values` (m,), for a pattern with one unknown in each row."""
         summed = np.bincount(self.slot, np.asarray(values, dtype=np.float64), self.entries)
         return SparseMatrix(self, np.asarray(summed, dtype=np.float64))
 

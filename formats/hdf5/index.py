@@ -106,7 +106,7 @@ class Part:
 
 
 def shown_parts(file: h5py.File, source: Source) -> list[Part] | None:
-    """Return the parts of a dataset in order; `file` is the open file `source`. None if it is no index.
+    """Return the parts of a dataset in order, or None if the open `file` is no index.
 
     Raises InputError if a part is missing or not beside the index, or if the rows are not consecutive.
     """

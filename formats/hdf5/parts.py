@@ -81,7 +81,7 @@ class PartFiles:
         raise OtherPartsError("is there already", remedy, source=printable(str(self.path(number))))
 
     def facts(self, number: int) -> PartFacts:
-        """Return the facts on a part. Raises InputError if it is unreadable or made with other settings."""
+        """Return the description of a part. Raises InputError if unreadable or made with other settings."""
         facts = part_facts(self.path(number))
         if facts.request != self.request:
             self._refuse(facts.path, "was made with other options or another size of parts")

@@ -166,7 +166,7 @@ class DatasetSamples:
                 yield str(error)
 
     def named(self, start: int, stop: int, step: int = 1) -> str:
-        """Return the input that selects each `step`-th sample from `start` to `stop` - 1: ``FILE#0:9:2``."""
+        """Return the text ``FILE#0:9:2`` that selects each `step`-th sample from `start` to `stop` - 1."""
         rows = self.rows[start:stop:step]
         split = f"{self.split}," if self.split else ""
         words = f"{rows[0]}" if len(rows) == 1 else f"{rows.start}:{rows.stop}"

@@ -31,7 +31,7 @@ class Values:
         return [Values(row, f"{key}[{k}]") for k, row in enumerate(rows)]
 
     def row(self, key: str) -> Values:
-        """Return the object at `key`."""
+        """Return the value of a key, an object."""
         row = self.data.get(key)
         if not isinstance(row, dict):
             raise self.error(f"{key} is no object")
@@ -45,7 +45,7 @@ class Values:
         return value
 
     def texts(self, key: str) -> list[str]:
-        """Return a list of non-empty texts."""
+        """Return the value of a key, a list of non-empty texts."""
         values = self.data.get(key)
         if not isinstance(values, list) or not all(isinstance(each, str) and each for each in values):
             raise self.error(f"{key} are no texts")

@@ -57,7 +57,7 @@ def facts_of(grid: Grid, block: int = 0, number: int = 0) -> dict[str, list[str]
 
 
 def plain(value: object) -> object:
-    """Return a value that JSON can store: NumPy numbers and arrays become Python's, all else becomes text."""
+    """Return a value that JSON can store: a number or lists for NumPy numbers and arrays, else text."""
     return value.tolist() if hasattr(value, "tolist") else str(value)
 
 

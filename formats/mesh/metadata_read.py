@@ -72,8 +72,8 @@ def _grid(blocks: Sequence[tuple[Floats, Facts]], name: str) -> Grid:
 def grid_with(nodes: Floats, facts: Facts, name: str = "") -> Grid:
     """Return the grid of a block with these metadata (`facts`); `name` applies if they have no name.
 
-    If `facts` lack the topology of a planar grid, it is found by position. A block of a multi-block grid
-    becomes a grid without connections.
+    If `facts` lack the topology of a planar grid, it is found from node positions. A block of a multi-block
+    grid becomes a grid without connections.
     """
     if says_in_space(facts):
         alone = number_of_grid(facts) is None

@@ -17,7 +17,7 @@ _SEAM = 1e-6  # largest distance between joined sides, relative to their first e
 def boundary_of(grid: Grid) -> Shape:
     """Return the outer edges of `grid` as a boundary with its topology, patches and name.
 
-    A multi-block grid gives its domain, and also its block layout if blocks share complete sides. A
+    A multi-block grid gives a domain, with the block layout if blocks share complete sides. A
     three-dimensional grid gives a `SpatialShape`. Raises InputError if edges or blocks do not fit together.
     """
     if grid.form != "plane":

@@ -15,7 +15,7 @@ _WRITTEN_ONLY = {"span-i", "span-j", "span-k"}  # options that only apply to wri
 
 
 def read_grids(source: Source, *, options: Options = frozenset()) -> Iterator[Grid]:
-    """Yield the grids of a Plot3D file (`grids_of_file`), in the layout that suits its content and `options`.
+    """Yield the grids of a Plot3D file, in the layout that suits its content and `options`.
 
     Connections and boundary conditions come from a neutral map file next to it, or else from node positions.
     Provenance has the counts of iblank values. Raises InputError: no layout fits; a block without cells.

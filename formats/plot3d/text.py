@@ -20,9 +20,9 @@ _MOST_REPEATED = 4  # largest plausible number of values per byte of the file, w
 
 
 def candidates(data: bytes, wanted: Options = frozenset()) -> list[Candidate]:
-    """Return all layouts that a text file with this count of numbers can have.
+    """Return all layouts that agree with the count of numbers in a text file.
 
-    Layouts by planes only if `wanted` has ``planes``. Raises InputError: not only numbers; no layout fits.
+    Layouts that store whole planes are tried only if `wanted` has ``planes``. Raises InputError if none fits.
     """
     values = _numbers(data)
 

@@ -54,9 +54,9 @@ class StoredBlock:
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
     """Write the blocks of `grids` as Plot3D, and a neutral map file unless there are several one-block grids.
 
-    Planar blocks get z = 0 if other blocks are in 3-D or the format needs it. `options` select the index of a
-    volume's third direction. Raises InputError if there is no grid, if several need a block count, if a block
-    is too large for a Fortran record, or if a grid in 3-D is to be written without z.
+    Planar blocks get z = 0 if other blocks have z or the format needs it. `options` are the words for the
+    variant of the format. Raises InputError if there is no grid, if the variant cannot store several blocks
+    or z, or if a block is too large for a Fortran record.
     """
     if "planes" in options:
         raise InputError("planes are read and not written", "leave the word out")

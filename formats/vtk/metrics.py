@@ -31,7 +31,7 @@ def write_metrics(path: Path, grids: Iterable[Grid], *, many: bool = False) -> N
 
 
 def metrics_of(grid: Grid) -> list[dict[str, NDArray[Any]]]:
-    """Return the cell arrays (ni-1, nj-1[, nk-1]) of each block by name: all metrics, and ``folded``."""
+    """Return, for each block, cell arrays (ni-1, nj-1[, nk-1]) by name: all metrics, and ``folded``."""
     every = {metric.name: per_cell_of_blocks(grid, metric.name) for metric in metrics_of_cells(grid)}
     of_blocks: list[dict[str, NDArray[Any]]] = []
     for number, block in enumerate(grid.blocks):

@@ -138,7 +138,7 @@ class Body:
         return np.asarray(s)
 
     def arcs_near(self, points: Floats) -> Floats:
-        """Return arc lengths (n,) on the meridian nearest to `points` (n, 2), x and radius, nose to tail."""
+        """Return for `points` (n, 2), nose to tail, the arc lengths (n,) of the meridian's nearest points."""
         s = arc_lengths(points)
         s *= self.length / s[-1]
         for _ in range(_STEPS):  # Newton's method for the foot of each point

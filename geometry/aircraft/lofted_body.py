@@ -167,7 +167,7 @@ class LoftedBody(Body):
         return np.stack([self.meridional(arcs)[:, 0], y, z], axis=-1).reshape(*s.shape, 3)
 
     def outside(self, points: Floats) -> Floats:
-        """Return radial distances (n,) of `points` (n, 3) from the surface in a section; negative inside."""
+        """Return radial distances (n,) of `points` (n, 3) from the surface; negative inside the body."""
         s = self.arc_at(points[:, 0])
         across, up, middle = self.sizes(s)
         y, z = points[:, 1] - middle, np.abs(points[:, 2])

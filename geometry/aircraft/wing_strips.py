@@ -61,7 +61,7 @@ def wing_strips(patches: Sequence[Floats], name: str) -> tuple[tuple[Floats, ...
 
 
 def at_heights(strip: Floats, z: Floats) -> Floats:
-    """Return the nodes (k, n, 3) of a strip (stations, n, 3) at positions `z` (k,), also extrapolated."""
+    """Return nodes (k, n, 3) at `z` (k,) on the lines of a strip (stations, n, 3), even beyond their ends."""
     return np.stack([on_line(strip[:, k], z) for k in range(strip.shape[1])], axis=1)
 
 

@@ -17,11 +17,11 @@ from meshonet.geometry.errors import InputError
 
 
 def across(grid: Grid, connection: Connection, depth: int) -> tuple[Floats, Floats]:
-    """Return rows of nodes on both sides of a connection: in the block of its side, and in the donor block.
+    """Return rows of nodes on both sides of a connection: first of its own block, then of the donor block.
 
     Both arrays are (depth, n, d), or (depth, n, m, 3) in volumes. A block with fewer than `depth` rows gives
     fewer. The first row is on the connection. Both arrays have the node order of the connection's side. If
-    the connection is periodic, its motion is applied to the rows of the side.
+    the connection is periodic, its motion is applied to the rows of its own block.
     """
     own, donor = (rows_beside(grid, *end, depth) for end in connection.ends)
     if connection.transform:

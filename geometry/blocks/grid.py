@@ -229,7 +229,7 @@ class Grid(Connected):
         return outer
 
     def joined_ranges(self) -> list[list[tuple[Side, Range]]]:
-        """Return for each block a list of the connected parts of its sides: side and index range of each."""
+        """Return, for each block, the side and the index range of every part that is connected to a block."""
         inside: list[list[tuple[Side, Range]]] = [[] for _ in self.blocks]
         for each in self.connections:
             for block, side, span in each.ends:

@@ -47,9 +47,9 @@ def period_of(motion: Motion) -> tuple[Screw, float]:
 
 
 def by_period(connections: Sequence[Connection]) -> list[tuple[Motion, list[Connection]]]:
-    """Return the different motions of periodic connections, each with its connections.
+    """Return the different motions of periodic connections, each with the connections that have it.
 
-    A connection with the inverse motion is reversed.
+    Connections that have the inverse motion are reversed.
     """
     periods: list[tuple[Motion, list[Connection]]] = []
     for each in connections:

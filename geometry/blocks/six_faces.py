@@ -87,7 +87,7 @@ class SixFaces:
         return edge_of(getattr(self, side), side, second)
 
     def steps_inwards(self, side: Side, second: Side) -> Floats:
-        """Return the steps (n, 3) from the lower to the higher index between two rows of the face at `side`.
+        """Return the steps (n, 3) between two rows of the face at `side`, from lower to higher index.
 
         The rows are the edge that this face shares with the face `second`, and the row next to this edge.
         """
@@ -167,7 +167,7 @@ def edges() -> Iterator[tuple[Side, Side]]:
 
 
 def edge_of(face: Floats, side: Side, second: Side) -> Floats:
-    """Return a view of the nodes (n, 3) of the edge that `face` (at `side`) shares with face `second`."""
+    """Return the nodes (n, 3) of an edge as a view: `face`, on `side`, meets the face on `second` there."""
     axis, end = PLACES[second]
     return np.asarray(np.moveaxis(face, axis - (axis > PLACES[side][0]), 0)[end])
 

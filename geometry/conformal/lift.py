@@ -42,7 +42,7 @@ class Corner:
     k: Any
 
     def restore(self, v: Any) -> Any:
-        """Return the points whose images under the map are `v`, an array or a torch tensor."""
+        """Return the points that the map takes to `v`, an array or a torch tensor."""
         r = ((v - self.P) / (v - self.Q)) ** self.k
         return (self.q * r - self.p) / (r - 1.0)
 

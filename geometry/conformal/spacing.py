@@ -41,7 +41,7 @@ def conformal_knots(
     ----------
     marks : (m,) ascending arc lengths in (0, length) at which there must be nodes.
     at : (m,) indices of the nodes at `marks`; if None, they are multiples of one of the `steps`.
-    steps : in descending order; the first that fits before the first and after the last mark is used.
+    steps : descending; used is the first that fits before the first mark, and the first after the last mark.
 
     Raises InputError: the conformal angle does not increase along the curve; no convergence.
     """

@@ -7,7 +7,7 @@ from meshonet.geometry.domain.loop import Loop
 
 
 def place_at(loop: Loop, arc: Floats) -> Floats:
-    """Return a number (n,), called place, for each of the points of a `loop` at arc lengths `arc` (n,).
+    """Return the place, a number (n,), of each point of a `loop`; `arc` (n,) are the points' arc lengths.
 
     Its integer part is the index of the last corner before the point. Its fractional part is the fraction of
     the arc length from this corner to the next. Without corners, it is the fraction of the whole length.

@@ -58,7 +58,7 @@ def family(name: str) -> Family:
 def polyline(corners: Corners, n: int, like: Corners | None = None) -> Floats:
     """Return `n` nodes (n, 2) along a polyline, in nearly equal steps; every corner is bitwise a node.
 
-    With `like`, the corners have the node indices that the corners of the polyline `like` would have.
+    With `like`, another polyline, the corners get the node indices of the corners of `like`.
 
     >>> polyline([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)], 5).tolist()
     [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.0, 0.5], [1.0, 1.0]]
@@ -140,7 +140,7 @@ def airfoil(ratio: float, ni: int, nj: int) -> Boundary:
 
 
 def hole(height: float, ni: int, nj: int) -> Boundary:
-    """Case 6: return a plate, 2 by 2 around (0, 0), with a hole of radius 0.35 at y = `height`.
+    """Case 6: return a square of side 2 around (0, 0), with a hole of radius 0.35 around (0, `height`).
 
     Nodes run clockwise from the rightmost point of the hole.
     """

@@ -17,10 +17,10 @@ def split(
 ) -> tuple[str, ...]:
     """Return ``train`` or ``test`` for each of `parameters`; `way` is one of `WAYS`.
 
-    The test members have the middle values of the parameter for ``interpolation``, the highest values for
-    ``extrapolation`` (the lowest with `low`), and are drawn at random for ``random``. `share` is the fraction
-    of test members; at least one member is for tests, and at least two are for training. Raises InputError:
-    an unknown way; fewer than three members; equal parameters, unless the way is random.
+    Test members have the middle values for ``interpolation``, and the highest values (with `low`, the lowest)
+    for ``extrapolation``; for ``random`` they are drawn. `share` is the fraction of test members. At least 1
+    member is for tests, and at least 2 for training. Raises InputError: an unknown way; fewer than three
+    members; equal parameters, unless the way is random.
 
     >>> split([0.3, 0.1, 0.2], "extrapolation")
     ('test', 'train', 'train')

@@ -70,9 +70,9 @@ def find_crossings(points: Floats, *, closed: bool = True, limit: int = 64) -> l
 
 
 def sweep_spans(p: Floats, end: Floats) -> tuple[Floats, Floats]:
-    """Return the least and the largest coordinate (m,) of segments, from `p` to `end` (m, 2), along a line.
+    """Return the lower and the upper ends (m,) of segments projected onto a line of direction `_SWEEP`.
 
-    The line has the oblique direction `_SWEEP`. The largest coordinates are rounded upwards.
+    Segments go from `p` to `end`, (m, 2) each. Upper ends are rounded upwards.
     """
     along, along_end = product(p[: len(end)], _SWEEP), product(end, _SWEEP)
     low, top = np.minimum(along, along_end), np.maximum(along, along_end)

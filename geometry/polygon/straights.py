@@ -38,9 +38,9 @@ def find_kinks(points: Floats, *, few: int = FEW) -> Indices:
 def straight_intervals(points: Floats, corners: Indices) -> Bools:
     """Return which intervals (n,) of a closed polygon `points` (n, 2) are straight lines.
 
-    A straight interval is at least `LONG` times as long as one of its neighbours; intervals with one of the
-    `corners` (indices of points) between them are no neighbours. At both ends, the polygon turns by at most
-    `EXPLAINED` times the angle between tangent and chord of the circle through the next three points.
+    A straight interval is at least `LONG` times as long as a neighbour from which no corner separates it;
+    `corners` are indices of points. At both ends, the polygon turns by at most `EXPLAINED` times the angle
+    between tangent and chord of the circle through the next three points.
     """
     turn, joined = turning(points, closed=True), np.ones(len(points), dtype=bool)
     turn[corners], joined[corners] = 0.0, False

@@ -73,7 +73,7 @@ class CheckResult:
         return max(broken, key=lambda limit: limit.level == "fail", default=None)
 
     def under(self, gates: Sequence[Gate]) -> "CheckResult":
-        """Return the outcome; gates on the figure of this check replace its limits."""
+        """Return the result with the user's limits on this figure (`gates`) in place of the profile's."""
         compare = self.check.limits[0].compare
         own = [gate for gate in gates if gate.replaces(self.check.figure, compare)]
         limits = tuple(Limit("fail", gate.compare, gate.limit) for gate in own)
@@ -104,7 +104,7 @@ class ProfileReport:
         return replace(self, results=_once(result.under(gates) for result in self.results))
 
     def replaced(self) -> list[str]:
-        """Return the limits that replace limits of profiles, as texts such as ``box_ratio > 4000``."""
+        """Return the user's limits that replace those of a profile, as texts such as ``box_ratio > 4000``."""
         return [
             f"{result.check.figure} {limit.compare} {limit.value:g}"
             for result in self.results

@@ -131,7 +131,7 @@ class QualityReport:
         return lines + (self.profile.under(gates).failures() if self.profile else [])
 
     def judgement(self, gates: Gates) -> Judgement:
-        """Return the outcome of the gates and of the profiles."""
+        """Return whether the grid keeps the limits of the user (`gates`) and of the profiles."""
         gates = _parsed(gates)
         beyond = [gate.in_short(figure) for gate, figure, broken in self.judged(gates) if broken]
         profile = self.profile.under(gates) if self.profile else None

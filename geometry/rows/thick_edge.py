@@ -70,7 +70,7 @@ LEAST_EDGE = 0.01
 
 
 def round_edged(airfoil: Airfoil) -> tuple[Airfoil, tuple[str, ...]]:
-    """Return the airfoil with a round trailing edge of at least `LEAST_EDGE` chords, and notes on changes."""
+    """Return the airfoil with a round trailing edge at least `LEAST_EDGE` chords thick, and notes."""
     notes: tuple[str, ...] = ()
     body, height = airfoil, airfoil.gap / airfoil.chord
     name = airfoil.name or "a section"

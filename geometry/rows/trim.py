@@ -35,9 +35,10 @@ class WallPlanes:
     unit: str = "m"
 
     def trimmed(self, points: Floats, wall: int) -> tuple[Floats, tuple[str, ...]]:
-        """Return `points` (n, 2), x and r of hub (`wall` 0) or casing (1), cut at the planes, and notes.
+        """Return the curve of hub (`wall` 0) or casing (1) between both planes, and notes.
 
-        Raises InputError: a plane that the curve does not reach; an outlet before the inlet.
+        `points` (n, 2) are x and r of the curve. Raises InputError: a plane that the curve does not reach; an
+        outlet before the inlet.
         """
         if self.inlet is None and self.outlet is None:
             return points, ()

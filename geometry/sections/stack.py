@@ -152,9 +152,9 @@ class Stack:
 
     @property
     def cants(self) -> Floats:
-        """Cants (n,) of the sections, which are rotations about x, in radians.
+        """Angles (n,) in radians by which the sections are rotated about x.
 
-        The cant ``panel`` is the mean dihedral of the adjacent panels, and 0 in a plane of symmetry.
+        The cant ``panel`` is the mean dihedral of the panels on both sides, and 0 in a plane of symmetry.
         """
         panels = self.dihedrals
         own = np.concatenate([[0.0], 0.5 * (panels[1:] + panels[:-1]), panels[-1:]])

@@ -181,7 +181,7 @@ class Outline:
         return o_boundary(wall, nj, box.mean(axis=0), radius, curve, self.name, extent, notes=notes)
 
     def clockwise(self) -> Curve:
-        """Return the curve clockwise from its rightmost point, or from the middle of a right side."""
+        """Return the curve clockwise from its rightmost point; from the middle of a vertical right side."""
         curve = self.curve.reversed() if self._left else self.curve
         p, n = curve.points, len(curve.points)
         corner = np.isin(np.arange(n), curve.corner_index)
@@ -247,7 +247,7 @@ def _stretches(ends: Sequence[int], n: int) -> list[Indices]:
 
 
 def sides_departure(curve: Curve) -> tuple[str, ...]:
-    """Return a note if sides deviate visibly from the straight lines between their points."""
+    """Return a note if the smooth curve through the points deviates visibly from their polygon."""
     off = curve.departure()
     visible = off > _DEPARTURE * extent_of(curve.points)
     return (departure_note("the sides are smooth curves", off),) if visible else ()

@@ -61,7 +61,7 @@ def cells_of_wake(
 
 
 def wake_axis(leading_edge: Floats, trailing_edge: Floats) -> Floats:
-    """Return the unit vector (2,) along which a wake ends: ±x, or the chord if it is steeper than 45°."""
+    """Return the unit vector (2,) of a far wake: along ±x, or along a chord that is steeper than 45°."""
     chord = np.asarray(trailing_edge - leading_edge)
     if abs(chord[1]) <= abs(chord[0]):
         return np.array([math.copysign(1.0, chord[0]), 0.0])

@@ -86,8 +86,8 @@ class FirstCell:
     def height(self, unit: float = 1.0) -> float | None:
         """Return the first-cell height in the unit of the request; None if not requested.
 
-        `unit` is the reference length if `length` is None. Raises InputError: heights by wall; a value out of
-        range.
+        `unit` is the reference length if `length` is None. Raises InputError if walls have different heights
+        or a value is out of range.
         """
         height = self.heights(unit)
         if isinstance(height, Mapping):

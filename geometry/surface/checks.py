@@ -14,7 +14,7 @@ _SIDES = ("west", "east", "south", "north")
 
 
 def node_place(nodes: Floats, lattices: tuple[Indices, ...], node: int) -> str:
-    """Return the place of a node as text: the first patch that has it, its i, j and its x, y, z."""
+    """Return text that says where a node is: a patch, the node's i and j in this patch, and its x, y, z."""
     for number, lattice in enumerate(lattices):
         at = np.argwhere(lattice == node)
         if len(at):
@@ -52,7 +52,7 @@ def check_manifold(nodes: Floats, lattices: tuple[Indices, ...], crowded: Indice
 
 
 def check_gaps(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> None:
-    """Raise InputError if two nodes of open `edges` (k, 2) nearly coincide."""
+    """Raise InputError if two nodes of open `edges` (k, 2), those of one quad only, nearly coincide."""
     if not len(edges):
         return
     length = np.sqrt(((nodes[edges[:, 0]] - nodes[edges[:, 1]]) ** 2).sum(axis=1))
@@ -73,7 +73,7 @@ def check_gaps(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> 
 
 
 def check_seams(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> None:
-    """Raise InputError if sides do not match: nodes of open `edges` (k, 2) lie inside other open edges."""
+    """Raise InputError if nodes of open `edges` (k, 2), those of one quad only, lie on other open edges."""
     ends = nodes[edges]
     along = ends[:, 1] - ends[:, 0]
     length = norms(along)
@@ -100,7 +100,7 @@ def check_seams(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) ->
 def check_sides(
     nodes: Floats, lattices: tuple[Indices, ...], quads: Indices, twin: Indices, valence: Indices
 ) -> None:
-    """Raise InputError if the faces around a node do not form a single ring."""
+    """Raise InputError if two parts of the surface touch in a single node."""
     first, _ = ends_of(quads)
     faces = np.bincount(first, minlength=len(nodes))
     opened = np.bincount(first[twin < 0], minlength=len(nodes))

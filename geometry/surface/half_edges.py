@@ -21,9 +21,9 @@ def open_sides(quads: Indices, twin: Indices) -> Indices:
 
 
 def paired(quads: Indices, nodes: int) -> tuple[Indices, Indices]:
-    """Return the opposite half-edge (4 m,) of each half-edge, -1 at open edges; also surplus half-edges.
+    """Return for each half-edge (4 m,) the one opposite it, or -1 at open edges; also surplus half-edges.
 
-    The third and further half-edges of an edge are surplus. `nodes` is the number of nodes.
+    If three or more quads share an edge, all but two of its half-edges are surplus. `nodes` is the number.
     """
     first, last = ends_of(quads)
     key = np.minimum(first, last) * nodes + np.maximum(first, last)

@@ -52,7 +52,7 @@ class Destination:
     nodes : approximate number of nodes of a result.
     space : kind of three-dimensional blocks of the results; None: they are planar.
 
-    Raises InputError if a field or extension is unknown, or if the format cannot be written or has no parts.
+    Raises InputError if a field or extension is unknown, or the format cannot be written or split into parts.
     """
 
     def __init__(

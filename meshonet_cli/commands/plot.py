@@ -23,7 +23,7 @@ _option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 # fmt: off
 @dataclass(frozen=True, kw_only=True)
 class PictureFiles(Files):
-    """Files of pictures."""
+    """Options for the files of pictures."""
 
     output: Annotated[str, _output(
         "-o", "--output", metavar="PICTURE", help="Picture (.png, .svg or .pdf) or interactive page (.html) "

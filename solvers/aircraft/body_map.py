@@ -61,14 +61,14 @@ class BodyMap:
         return np.stack([x, self.body.y - r * cos(theta), r * sin(theta)], axis=-1)
 
     def meridional(self, s: Floats, zeta: Floats) -> Floats:
-        """Return x and the distance from the axis (n, 2) of points with coordinates `s` and `zeta` (n,)."""
+        """Return x and the distance from the axis (n, 2) at s (n,) along the body and zeta (n,) off it."""
         along, across = s * ((_LINES - 1) / self.body.length), zeta * (_LEVELS - 1)
         at_body = self.body.meridional(self.arcs(s)) - _between(self.table[:, :4], along, np.zeros_like(s))
         away = 1.0 - zeta
         return _between(self.table, along, across) + at_body * (away * away)[:, None]
 
     def arcs(self, s: Floats) -> Floats:
-        """Return the arc lengths (n,) of the body's meridian, from the nose, at coordinates `s` (n,)."""
+        """Return the arc lengths (n,) of the body's meridian, from the nose, at the coordinates `s` (n,)."""
         along = s * ((_LINES - 1) / self.body.length)
         return np.clip(_between(self._arcs, along, np.zeros_like(s))[:, 0], 0.0, self.body.length)
 
@@ -82,7 +82,7 @@ class BodyMap:
         return np.minimum(places[..., 1], np.pi - places[..., 1])
 
     def places(self, points: Floats, near: Floats | None = None) -> Floats:
-        """Return s, theta, zeta (..., 3) of points (..., 3), by Newton's method.
+        """Return the coordinates s, theta, zeta (..., 3) of `points` (..., 3), by Newton's method.
 
         The iteration starts from `near` (..., 3), by default from the nearest nodes of the table.
         """

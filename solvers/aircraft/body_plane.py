@@ -46,7 +46,7 @@ class LevelPlan:
 
     @property
     def patches(self) -> int:
-        """Number of patches of each level."""
+        """Number of patches of each level (a surface around the body)."""
         return sum(each.patches for each in self.columns) + len(self.between) + 4
 
     @property
@@ -180,10 +180,10 @@ class BodyEnd:
 
     @classmethod
     def of(cls, points: Points, sides: Sequence[Side]) -> Self:
-        """Return the end of the grid next to the first or the last wing.
+        """Return the part of the grid between the nose or the tail and the nearest wing.
 
-        `sides` has, for several levels, the wing's nodes that face this end; the body is the first level.
-        The nodes' coordinate s is measured from the tip of nose or tail.
+        `sides` has, for each level around the body, the wing's nodes that face this part; level 0 is on it.
+        The coordinate s of these nodes is measured from the tip of nose or tail.
         """
         nodes, cells = sides[0]
         way, last = min((float(nodes[k, 0]), float(cells[k])) for k in (0, -1))

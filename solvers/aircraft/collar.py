@@ -137,7 +137,7 @@ def collar(
 ) -> tuple[Floats, float]:
     """Return nodes (n, rows + 1, 2) between the closed loops `root` and `outer` (n, 2), and a sine.
 
-    It is the sine of the smallest angle between grid lines before nodes are spaced.
+    The sine is that of the smallest angle of the grid before nodes are moved along its lines.
 
     Parameters
     ----------

@@ -160,7 +160,7 @@ class CollarLevel:
 
     @property
     def sides(self) -> tuple[float, float]:
-        """Smallest and largest coordinate s (`BodyMap`) of the rectangle around the section."""
+        """Smallest and largest s, the coordinate along the body, of the rectangle around the section."""
         unit = float(self.hole.scale[0])
         return self.hole.box.front / unit, self.hole.box.back / unit
 

@@ -84,14 +84,14 @@ class ColumnPlan:
         return replace(self, collars=(replace(first, low=low, top=top), *fins))
 
     def evened(self, widest: float) -> ColumnPlan:
-        """Return the plan with the given `widest` (field of `CollarPlan`) in all its collars."""
+        """Return the plan with `widest`, a limit on cell sizes around a wing or fin (see `CollarPlan`)."""
         return replace(self, collars=tuple(replace(each, widest=widest) for each in self.collars))
 
 
 def planned_column(
     holes: Sequence[Sequence[Hole]], first: float, growth: float
 ) -> tuple[ColumnPlan, list[ColumnLevel]]:
-    """Return the plan of a column around `holes`, given by wing and level, and the column on each level."""
+    """Return the plan of a column and the column on each level; `holes` has sections by wing and level."""
     corners = planned_corners([hole for each in holes for hole in each])
     collars, levels = zip(*(planned_collar(each, corners, first, growth) for each in holes), strict=True)
     plan = ColumnPlan(collars, holes[-1][0].fin)
@@ -126,7 +126,7 @@ class ColumnLevel:
         return replace(self, plan=plan, levels=tuple(levels))
 
     def beside_fin(self, fin: ColumnLevel) -> ColumnLevel:
-        """Return this column of a wing with its crown (theta = pi) halfway in zeta between wing and `fin`."""
+        """Return this column of a wing with its top (theta = pi) halfway in zeta between wing and `fin`."""
         zeta = self.zeta
         return replace(self, crown=zeta + 0.5 * (fin.levels[-1].hole.zeta - zeta))
 
@@ -143,7 +143,7 @@ class ColumnLevel:
 
     @property
     def low(self) -> Floats:
-        """Angles theta (`BodyMap`) of the grid lines between the keel and the first collar."""
+        """Angles theta of the grid lines from the bottom of the body (0) to the cells around the wing."""
         return self.levels[0].low_and_top[0] if self.below is None else self.below
 
     def above(self) -> tuple[float, tuple[float, float]]:
@@ -172,7 +172,7 @@ class ColumnLevel:
 
     @property
     def sides(self) -> tuple[Side, Side]:
-        """The nodes on the front and on the back of the column, from keel to crown."""
+        """The nodes on the front and on the back of the column, each from bottom to top of the body."""
         return self._side(0), self._side(1)
 
     def _side(self, which: int) -> Side:
@@ -208,7 +208,7 @@ class ColumnLevel:
         return self.zeta if self.crown is None else self.crown
 
     def patches(self) -> list[Floats]:
-        """Return the patches (ni, nj, 3): collar, patch above, patch below, collar of a fin above a wing."""
+        """Return the nodes (ni, nj, 3) of the patches around the wing, above it, below it, around the fin."""
         below, above = self.levels[0].long_sides
         zeta = self.zeta
         patches = [_on(self.levels[0].collar(), zeta)]

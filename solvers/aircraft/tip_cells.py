@@ -17,8 +17,7 @@ _STILL = 1e-13  # change of the logarithm of the growth ratio below which the it
 def arcs_beyond(lengths: Floats, first: Floats, cells: int) -> Floats:
     """Return arc lengths (n, cells + 1) of nodes on lines of `lengths` (n,) that start at the tip.
 
-    `first` (n,) are the sizes of first cells. Cell sizes are (h^4 + c)^(1/4), where h grows by a constant
-    ratio from the least of `first`, and c is a constant for each line.
+    Cells grow along each line; `first` (n,) are the sizes of the first ones.
     """
     least = float(first.min())
     more = (np.square(np.square(first / least)) - 1.0)[:, None]

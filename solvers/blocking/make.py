@@ -63,7 +63,7 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
 def grid_of(
     shape: DomainShape, request: BlockRequest, fine_of: Callable[[Domain, Timings], Layout]
 ) -> Solution:
-    """Return the grid of the layout that `fine_of` makes of the domain. Raises errors as `make_blocks`."""
+    """Return the grid of the blocks that `fine_of` makes of the domain. Raises errors as `make_blocks`."""
     begun = perf_counter()
     timings: Timings = {}
     domain, height = _checked(shape.domain, request), request.heights(shape.unit)

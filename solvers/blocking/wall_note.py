@@ -52,7 +52,7 @@ def without_layers(domain: Domain) -> list[str]:
 
 
 def sharp_edge_notes(layout: Layout) -> list[str]:
-    """Return a note for each sharp edge at which cells have wide angles because no wake has layers there."""
+    """Return a note for each sharp edge where cells have wide angles because no layers follow its wake."""
     notes, mesh = [], layout.mesh
     for loop in mesh.domain.loops[1:]:
         if has_sharp_edge(loop):

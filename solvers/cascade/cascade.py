@@ -173,7 +173,7 @@ class Cascade:
 
     @cached_property
     def rows_of_layers(self) -> int:
-        """Number of rows of the layers."""
+        """Number of rows of cells in the layers around the blade."""
         return self.layers.rows(float((self.ring.thickness / self.factors_at(self.ring.arcs)).max()))
 
     @cached_property

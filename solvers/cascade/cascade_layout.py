@@ -186,8 +186,8 @@ def attached_cells(
 ) -> int:  # fmt: skip
     """Return the number of cells in the layers and in the rows of cells to inlet and outlet.
 
-    `counts` are the numbers of cells along the edges of each chord. `layers` replaces the number of layers.
-    `longest` has a length by the index of the loop (inlet or outlet); a shorter row counts as that long.
+    `counts` are the cells along the edges of each chord (set of opposite edges). `layers` replaces the
+    number of layers. `longest` has lengths by loop index; they replace shorter lengths of rows.
     """
     along = chords.along_loops(counts).tolist()
     total = along[BLADE] * (cascade.rows_of_layers if layers is None else layers)

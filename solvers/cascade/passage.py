@@ -58,8 +58,8 @@ class Passage:
     ) -> Self:  # fmt: skip
         """Return the passage around a closed front (the blade, or the outer edge of its layers).
 
-        Blocks end at the distances `near` (in pitches) before and behind the front, or at `inlet` and
-        `outlet` if these are smaller. By default, `centre` is the point farthest inside the front.
+        Before and behind the front, its blocks end at the distances `near`, in pitches, but at most at the
+        distances `inlet` and `outlet`. `centre` is a point inside the front.
         """
         points = front.curve.points
         centre = inner_point(points) if centre is None else centre
@@ -87,7 +87,7 @@ class Passage:
         return np.asarray(((complex_of(points) - self.centre) / self.period).real)
 
     def at(self, axial: Sequence[float], along: Sequence[float]) -> Floats:
-        """Return points (n, 2) at distances from the centre: `axial` (n,), and `along` (n,) in pitches."""
+        """Return points (n, 2) at `axial` (n,) from the centre along the axis and `along` (n,) pitches."""
         centre = pairs_of(np.array(self.centre))
         return centre + np.array(axial)[:, None] * self.axis + np.array(along)[:, None] * self.pitch
 
@@ -96,7 +96,7 @@ class Passage:
         return np.asarray(times(1j * np.pi, (complex_of(points) - self.centre)) / self.period)
 
     def of_zeta(self, zeta: Complexes) -> Floats:
-        """Return the points (n, 2) with complex coordinates `zeta` (n,); the inverse of the method `zeta`."""
+        """Return the points (n, 2) with complex coordinates `zeta` (n,): the inverse of method `zeta`."""
         return pairs_of(self.centre + times(zeta, self.period) / (1j * np.pi))
 
     def domain(self, inlet: float, outlet: float) -> Domain:

@@ -50,7 +50,7 @@ class PassageFlow:
 
     @classmethod
     def of(cls, points: Complexes) -> Self:
-        """Return the flow past a cascade of clockwise polygons with points ζ = `points` (`Passage.zeta`)."""
+        """Return the flow past a cascade of clockwise polygons; `points` are complex ζ (`Passage.zeta`)."""
         sheet = _sheet(points)
         gain = 2.0 * np.pi * sheet * modulus(np.roll(points, -1) - points)
         parts = int(np.ceil(np.abs(gain).max() / _LONGEST))
@@ -85,7 +85,7 @@ class PassageFlow:
         return float(before.real), float(behind.real)
 
     def inside(self, places: Complexes) -> Complexes:
-        """Return ζ - G (m,), coordinate minus potential, at the positions σ = `places` (m,) in the strip.
+        """Return coordinate ζ minus complex potential (m,) at the points σ = `places` (m,) of the strip.
 
         Cauchy's integral over the blade is a trapezoidal sum in the variable tanh σ/2, divided by the same
         sum for the constant 1 (Helsing, Ojala, J. Comput. Phys. 227 (2008) 2899-2921).

@@ -26,8 +26,8 @@ Shift: TypeAlias = tuple[Floats, Callable[[Floats], Floats]]
 class StripGrid:
     """A grid in the strip (the conformal image of the domain), to be evaluated at its nodes.
 
-    For points w, `c` (2 MODES + 1, LEVELS) are the Fourier modes of F = w - i theta at Chebyshev points.
-    `wall` and `far` (n,) are F at the nodes of wall and far field. `eta` (nj,) ascends from 0 to 1.
+    Points of the strip are w = F + i theta. `c` (2 MODES + 1, LEVELS) are the Fourier modes of F at Chebyshev
+    points, `wall` and `far` (n,) F at the nodes of wall and far field. `eta` (nj,) ascends from 0 to 1.
     """
 
     def __init__(self, c: Complexes, wall: Complexes, far: Complexes, eta: Floats) -> None:

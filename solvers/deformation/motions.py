@@ -25,7 +25,7 @@ class Turning:
 
     @classmethod
     def of(cls, nodes: Floats, edges: Indices) -> Self:
-        """Return the object for wall `edges` (m, 2), pairs of indices into `nodes` (n, 2)."""
+        """Return the weights for the wall `edges` (m, 2), pairs of indices into `nodes` (n, 2)."""
         nearness = 1.0 / np.maximum(norms(nodes[edges[:, 1]] - nodes[edges[:, 0]]), 1e-300)
         total = np.bincount(edges.ravel(), np.repeat(nearness, 2), len(nodes))
         return cls(edges, nearness[:, None] / total[edges])

@@ -57,7 +57,7 @@ class NodeTable:
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """Pieces of the whole outer boundary; pieces on periodic sides have no name."""
+        """The whole outer boundary as pieces, one for each patch; on periodic sides the patch has no name."""
         periodic = [
             Patch("", side, *span[0], across=span[1] if span[1:] else None, block=block)
             for each in self.grid.connections

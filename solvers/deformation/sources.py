@@ -29,10 +29,9 @@ class Sources:
 
 
 def sources_of(table: NodeTable, moved: Bools) -> Sources:
-    """Return the sources on the outer boundary of `table`; the mask `moved` (n,) marks moved nodes.
+    """Return the boundary nodes from which displacements are interpolated, with the `moved` ones (mask (n,)).
 
-    Far from the moved nodes, one source stands for a group of fixed nodes. The distance from the moved nodes
-    and the first-cell height limit the extent of such a group.
+    Far from the moved nodes, one node stands for a group of fixed nodes.
     """
     elements = elements_of(table.pieces, table.nodes.shape[1])
     areas = areas_of(table.nodes, elements)

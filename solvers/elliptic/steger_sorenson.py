@@ -44,8 +44,8 @@ def solve_steger_sorenson(
 
     Parameters
     ----------
-    heights : first-cell heights by controlled side of a quad or O boundary, in its unit; 0: the height is not
-        controlled. None: only angles are controlled, at south and north, or at the body.
+    heights : first-cell height of each controlled side of a quad or O boundary, in its unit. With 0, only the
+        angle of the side is controlled. None controls the angles at south and north, or at the body.
     angle : angle in degrees between an edge and the lines that leave it.
     tol, max_cycles, initial : as in `solve`.
 

@@ -22,8 +22,8 @@ MODES = 512  # modes along a direction that are kept; finer ones are all divided
 class Descent:
     """Minimisation of the functional over planar nodes (ni, nj, 2), in place; boundary nodes are fixed.
 
-    If `periodic`, the grid is around a body: its last row repeats the first, and moves. `aspect` is the
-    aspect ratio a of the functional; None computes it from `nodes`.
+    In a `periodic` grid, which is around a body, the last row repeats the first, and both move. `aspect` is
+    the aspect ratio a of the functional; None computes it from `nodes`.
     """
 
     def __init__(

@@ -25,7 +25,7 @@ STEEPEST = 1.3  # growth beyond which marched grids have larger angles than vari
 
 
 def first_cell(boundary: Boundary) -> float:
-    """Return the default first-cell height of a C `boundary`, in its unit."""
+    """Return the default first-cell height of a C boundary, in the unit of the boundary."""
     behind = boundary.wake
     wall = boundary.south[behind : boundary.ni - behind]
     smallest = float(np.hypot(*np.diff(wall, axis=0).T).min())

@@ -23,7 +23,7 @@ _CLOSED_AHEAD, _ASIDE, _OPEN_AHEAD, _OPEN_MORE = 1.8, 0.055, 23.0, 0.015
 
 
 class Front:
-    """Level 0 of a march from an O or C boundary, and the distance that the last level must reach."""
+    """The first nodes of a march, on a body or on body and wake, and the distance to march."""
 
     inner: float  # radius of the circle of the body's area
     slender: float  # 1 - l/L, with the perimeters L of the body and l of a circle of the same area

@@ -20,8 +20,8 @@ def layer_arcs(
 
     The first `constant` cells have the height `first`, a number or (k,). Further heights never decrease.
     Their logarithms are a quadratic function of the index, and the last height is about `last` (k,). If
-    `last` is infinite, the ratio r of heights is constant. Otherwise the logarithm of each ratio is at most
-    the larger of log(`growth`) and (1 + `steeper`) log(r).
+    `last` is infinite, the ratio r of heights is constant. Otherwise the logarithm of every ratio is limited:
+    to (1 + `steeper`) log(r), or to log(`growth`) if that is larger.
     """
     rows = cells - constant + 1  # the last constant cell and those that grow
     first = np.broadcast_to(np.asarray(first, dtype=np.float64), length.shape)

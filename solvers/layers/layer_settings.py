@@ -69,7 +69,7 @@ class LayerSettings:
 
     @property
     def steepest(self) -> float:
-        """Logarithm of the largest ratio of neighbouring cells along lines that leave walls."""
+        """Logarithm of the largest permitted ratio of neighbouring cells along lines that leave walls."""
         return math.log(self.limit) if self.limit else self.elsewhere
 
     @property
@@ -92,7 +92,7 @@ class LayerSettings:
         return min(growth, 1.0 + NOMINAL * (self.limit - 1.0)) if self.limit else growth
 
     def arcs(self, length: Floats, first: float | Floats, last: Floats, cells: int) -> Floats:
-        """Return the result of `layer_arcs`, distances (k, cells + 1) from walls, with these settings."""
+        """Return distances (k, cells + 1) of nodes from walls by `layer_arcs` with these settings."""
         most, steeper = self.growth, STEEPER
         if self.limit:
             most, steeper = math.exp(STEEPEST * math.log(self.limit)), STEEPEST / NOMINAL - 1.0

@@ -38,7 +38,7 @@ class Fewer(Wrapper):
     """Solves large grids by `method` on fewer nodes. If cells are folded, it tries twice as many nodes."""
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the solution of a boundary, on fewer nodes if it is large and no `start` is given."""
+        """Return the solution; large grids are solved on fewer nodes unless `start` is given."""
         above, n = FEWER_NODES.get(self.name, (0, 0))
         if not n or start is not None or max(boundary.ni, boundary.nj) <= above:
             return self.inner(boundary, start)

@@ -117,7 +117,7 @@ class Chords:
 
     @cached_property
     def least(self) -> Indices:
-        """Smallest number of cells of each chord: `LEAST`, or more if a wall has corners or turns."""
+        """Smallest number of cells (chords,) of each set of opposite edges; larger at walls that bend."""
         least = np.full(self.count, LEAST, dtype=np.intp)
         for edge, loop, arcs in self._walls():
             ends = np.sort(arcs[[0, -1]])
@@ -158,17 +158,17 @@ class Chords:
         return float(np.radians(turning_between(loop, arcs[:-1], arcs[1:]).max()))
 
     def counts_for_size(self, size: float, least: Indices | None = None) -> Indices:
-        """Return counts (chords,) for cells of the given size.
+        """Return numbers of cells (chords,) along sets of opposite edges (chords) for cells of a given size.
 
-        The count of a chord is the rounded geometric mean of length / size over its edges. `least` (chords,)
-        are the smallest permitted counts, by default those of the chords.
+        The number of a chord is the rounded geometric mean of length / size over its edges. `least` (chords,)
+        are the smallest permitted numbers, by default those of the chords.
         """
         wanted = log(np.maximum(self.lengths / size, 1e-9))
         mean = np.bincount(self.chord, wanted, self.count) / np.bincount(self.chord, minlength=self.count)
         return self.rounded(exp(mean), self.least if least is None else least)
 
     def rounded(self, wanted: Floats, least: Indices) -> Indices:
-        """Return permitted counts (chords,) near `wanted` (chords,), and at least `least` (chords,)."""
+        """Return permitted numbers of cells near `wanted` (chords,), and at least `least` (chords,)."""
         times = self.multiple
         return times * np.maximum(-(-least // times), nearest_whole(wanted / times).astype(np.intp))
 

@@ -18,7 +18,7 @@ SWEEPS = 20  # number of sweeps that smooth the target lengths
 
 @dataclass(frozen=True, eq=False)
 class Near:
-    """For each part of a size metric, the point on walls or fronts nearest to each edge of a mesh."""
+    """The points on walls that determine the target lengths of the edges of a mesh."""
 
     point: Indices  # (p, m) nearest point to each of m edges, for each of p parts
     distance: Floats  # (p, m) distance to this point

@@ -34,10 +34,10 @@ def straight_near(lines: Floats, away: Floats) -> Floats:
 
 
 def respaced_columns(values: Floats, space: Floats, first: float) -> Floats:
-    """Return s, theta (k, m, 2) of columns, with nodes moved along them so that first cells are `first` high.
+    """Return s, theta (k, m, 2) of the nodes of k columns, moved so that first cells are `first` high.
 
     `values` (k, m, 2) are s (see `Channel`) and theta of the given nodes, `space` (k, m, 3) their x, y, z.
-    Outer ends do not move.
+    Nodes move along their column; its outer end stays.
     """
     steps = norms(np.diff(space, axis=1))
     return resampled(values, steps, with_first(steps, np.full(len(steps), first)))

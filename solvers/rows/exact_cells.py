@@ -14,7 +14,7 @@ def exact_in_corners(
     nodes: Floats, begins: tuple[Floats, Floats], sizes: tuple[float, Floats],
     in_space: Callable[[Floats], Floats],
 ) -> Floats:  # fmt: skip
-    """Return nodes (..., 3), moved by Newton's method to given distances from two points each.
+    """Return nodes (..., 3), each moved by Newton's method to given distances from two points of its own.
 
     Parameters
     ----------

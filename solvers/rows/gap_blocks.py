@@ -30,7 +30,7 @@ class GapEnds:
 
 @dataclass(frozen=True, eq=False)
 class GapBlocks:
-    """The blocks in a gap, which fill the outline of the blade."""
+    """The blocks in a gap between blade and hub or casing, inside the outline of the blade."""
 
     fill: GapFill  # numbering of the nodes; those of the outline come first
     outline: Indices  # (k,) indices of the outline's nodes in a section of the row

@@ -47,7 +47,7 @@ class SectionPlane:
 
     @classmethod
     def of(cls, row: Row, height: float, first: float, growth: float, share: float = 1.0) -> Self:
-        """Return the section at a `height`, with first cells of height `first`; `share` scales the layers."""
+        """Return the section at `height` h, from 0 to 1; `share` is a factor on the thickness of layers."""
         u, lines = _lines(row.surface)
         s, theta = row.surface.crossings(lines, np.full(len(u), height)).T
         to = row.channel.meridional(height)
@@ -176,7 +176,7 @@ class SectionPlane:
         return np.interp(points[:, 0], self._stations, _SHARES)
 
     def stations(self, shares: Floats) -> Floats:
-        """Return m' (n,) (see `MeridionalMap`) of points whose shares (see the method `shares`) are given."""
+        """Return m' (n,), the coordinate along the flow, at `shares`; the inverse of the method `shares`."""
         return np.interp(shares, _SHARES, self._stations)
 
     def camber(self, shares: Floats) -> Floats:

@@ -36,7 +36,7 @@ def spaced_cells(length: float, ends: Ends, growth: float, largest: float, least
 
 
 def two_sided(lengths: Floats, ends: Ends, growth: float, cells: int) -> Floats:
-    """Return arc lengths (n, cells + 1) of nodes on n lines; cells grow from both end sizes `ends`."""
+    """Return arc lengths (n, cells + 1) of nodes on n lines; cells grow inwards from both `ends`."""
     from_ends = _from_ends(ends, growth, cells)
     least, most = lengths / cells, lengths
     largest = least
@@ -115,7 +115,7 @@ def _fourth(values: Floats) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Spacing:
-    """Relative arc lengths of the nodes of `two_sided`, tabulated for a range of line lengths."""
+    """Relative arc lengths of nodes whose cells grow from both ends, tabulated by the length of the line."""
 
     lengths: tuple[float, float]  # shortest and longest line
     table: Floats  # (cells + 1, m) relative arc lengths at m equally spaced lengths

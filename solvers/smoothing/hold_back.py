@@ -60,7 +60,7 @@ _SMALL = 0.02  # fraction of the displacement below which a node is reset
 
 
 def held_back(grid: Grid, original: Layout, layout: Layout, before: PlaneMeasures) -> Grid | None:
-    """Return `grid`, moved from `original` towards `layout` as far as no measure becomes worse.
+    """Return `grid` with its nodes moved towards those of `layout`, as far as no measure becomes worse.
 
     `original` is the layout and `before` the measures of `grid`. Returns None if hardly any node would move.
     """

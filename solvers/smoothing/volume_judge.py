@@ -43,7 +43,7 @@ def measures(mesh: HexMesh) -> VolumeMeasures:
 
 
 def cells_below(mesh: HexMesh, bound: float) -> list[Bools]:
-    """Return for each block a mask of cells with a scaled Jacobian below `bound`; 0 marks folded cells."""
+    """Return for each block a mask of cells whose scaled Jacobian is below `bound`; 0 finds folded cells."""
     scaled = solid_metric(_grid(mesh), "scaled_jacobian")
     return [least < bound if bound > 0 else least <= 0.0 for least in scaled]
 

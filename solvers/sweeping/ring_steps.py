@@ -14,9 +14,9 @@ _CLOSE = 1e-9  # of the length, to which steps fill it
 
 
 def ring_steps(lengths: Floats, sizes: Floats, rows: int, first: float | None) -> Floats:
-    """Return the steps (k, rows) on k lines of `lengths` (k,), each before a cell of the length `sizes` (k,).
+    """Return the steps (k, rows) of k lines of `lengths` (k,); a cell of size `sizes` (k,) follows each line.
 
-    Steps begin with `first`; if it is None, all ratios along a line are equal. If a ratio above `LARGEST`
+    The first step is `first`; if it is None, all ratios along a line are equal. If a ratio above `LARGEST`
     were needed, steps do not fill the length (see `largest_ratio`).
     """
     most = math.log(LARGEST)

@@ -114,7 +114,7 @@ def closed_place(faces: SixFaces) -> Place | None:
 
 
 def next_to_faces(counts: tuple[int, int, int]) -> Iterator[tuple[tuple[Side, ...], Ranges]]:
-    """Yield each set of three, two or one sides, and the ranges of the inner nodes next to all of them."""
+    """Yield each corner, edge and face of a volume as a set of sides, with the inner nodes next to it."""
     for size in (3, 2, 1) if min(counts) > 2 else ():
         for sides in combinations(FACES, size):
             if len({PLACES[side][0] for side in sides}) == size:

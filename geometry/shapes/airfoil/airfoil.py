@@ -123,7 +123,7 @@ class Airfoil:
 
     @property
     def outline_notes(self) -> tuple[str, ...]:
-        """Notes on the outline: an oblique base, ripples, a curve that deviates from the given polygon."""
+        """Notes on an oblique blunt trailing edge, on ripples, and on a curve far from the given polygon."""
         return self.notes + shape_notes(self._section, self.curve, self.chord)
 
     @cached_property

@@ -116,7 +116,7 @@ def nose_radius(curve: Curve, middle: float, edge: Floats, chord: float) -> floa
 
 
 def shape_notes(section: CleanSection, curve: Curve, chord: float) -> tuple[str, ...]:
-    """Return notes on an oblique base, on ripples, and on a curve that deviates from its polygon."""
+    """Return notes on an oblique blunt trailing edge, on ripples, and on a curve far from its polygon."""
     notes = _oblique_base(section, chord)
     count = sign_changes(curve, chord)
     if count >= RIPPLES:

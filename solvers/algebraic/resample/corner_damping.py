@@ -44,7 +44,7 @@ def fading(m: int, n: int) -> Floats:
 
 @lru_cache(maxsize=16)
 def cubic(n: int, count: int) -> Floats:
-    """Return the matrix (count, n) that turns second derivatives at knots into spline minus linear values."""
+    """Return the matrix (count, n) from second derivatives at knots to spline minus linear interpolant."""
     return _weighted(n, count, 2)
 
 

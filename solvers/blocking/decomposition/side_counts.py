@@ -169,7 +169,7 @@ def _alike(chords: Chords) -> list[Row]:
 
 
 def lacking_side(layout: Layout) -> Indices | None:
-    """Return the nodes of a periodic side that always has fewer cells than its partner, or None."""
+    """Return the nodes of a periodic side that always has fewer cells than its partner, if there is one."""
     if not layout.mesh.domain.periodic:
         return None
     for row, (_, first, second) in zip(_differences(Chords.of(layout)), sides_of(layout.mesh), strict=True):

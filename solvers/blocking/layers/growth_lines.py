@@ -32,7 +32,7 @@ class GrowthLines:
 
     @classmethod
     def of(cls, mesh: QuadMesh, limit: float, factors: Floats | None = None) -> Self:
-        """Return all pairs of consecutive edges; `limit` is the logarithm of the largest permitted ratio.
+        """Return all pairs of consecutive edges of grid lines; `limit` is the logarithm of the largest ratio.
 
         If `factors` (e,) are given, edge lengths are multiplied by them before ratios are computed.
         """
@@ -49,9 +49,9 @@ class GrowthLines:
     ) -> Self:
         """Return all pairs of consecutive edges on grid lines, each with a limit on its length ratio.
 
-        Limits are logarithms. `limit` applies across block sides, and on grid lines that start at the nodes
-        in the mask `walls` (n,), `elsewhere` to other pairs and at irregular vertices. In blocks beside a
-        wall, pairs parallel to the wall may also have the ratio on the wall, unless wall nodes are `sliding`.
+        Limits are logarithms. `limit` is for grid lines from the nodes in the mask `walls` (n,), and where
+        lines cross sides of blocks; `elsewhere` is for all other pairs. Beside a wall, pairs parallel to it
+        may also have the ratio that edges on the wall have, unless the wall's nodes are `sliding`.
         """
         mesh, pairs = layout.mesh, cls.of(layout.mesh, elsewhere)
         nodes = pairs.nodes

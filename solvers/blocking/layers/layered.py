@@ -61,9 +61,9 @@ def layered(
 ) -> Layout:  # fmt: skip
     """Return a fine layout of about `cells` cells, with layers at `loops` and `stretches` (parts of loops).
 
-    If `cells` is 0, edges away from walls are at most `cell_size` long. A given `layout` provides the
-    blocks; it is the layout of a similar domain, with or without the layers. Raises InputError if there is
-    too little room for layers, SolverError without blocks, NoValidGridError if cells are folded.
+    If `cells` is 0, edges away from walls are at most `cell_size` long. If `layout`, the layout of a similar
+    domain, is given, its blocks are used. Raises InputError if there is too little room for layers,
+    SolverError if no blocks are found, NoValidGridError if cells are folded.
     """
     timings = {} if timings is None else timings
     sheets = () if layout else tuple(k for k in loops if k and has_sharp_edge(domain.loops[k]))

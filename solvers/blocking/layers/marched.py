@@ -32,11 +32,10 @@ FEWEST_CELLS = 4.0  # smallest thickness of layers in first cells
 def marched(
     start: Floats, thickness: Floats, first: float, attempts: Sequence[MarchSettings]
 ) -> tuple[Floats | None, Bools]:
-    """Return the levels (n, m, 2) of the best of several marches, and a mask (n,) of its folded columns.
+    """Return the nodes (n, m, 2) of the best of several marches, and a mask (n,) of columns that fold.
 
-    The first level is the closed wall `start` (n, 2), with the domain on its left. The first cells have the
-    height `first`. The last level is at the distance `thickness` (n,). The levels are None if all marches
-    overflow.
+    Columns start at the closed wall `start` (n, 2), which has the domain on its left, with cells of the
+    height `first`. They are `thickness` (n,) long. Nodes are None if all marches overflow.
     """
     cells = cells_for_growth(first, float(thickness.max()), MARCH_GROWTH)
     heights = distinct(thickness)  # most columns have the same

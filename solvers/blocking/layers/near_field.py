@@ -82,9 +82,9 @@ class NearField:
         return -(-cells // multiple) * multiple
 
     def rows(self, mesh: QuadMesh, heights: Floats, settings: LayerSettings) -> Rows:
-        """Return straight rows from the nodes of the circle, loop 0 of `mesh`, to the outer boundary.
+        """Return nodes on straight lines from the circle around the bodies to the outer boundary.
 
-        `heights` (k,) are the heights of the k cells that touch the circle from inside.
+        The circle is loop 0 of `mesh`. `heights` (k,) are the heights of the k cells inside that touch it.
         """
         order = mesh.places.along(0)
         start = mesh.nodes[order]

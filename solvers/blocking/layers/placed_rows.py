@@ -25,7 +25,7 @@ _STEPS = 50  # of bisection, to round-off
 
 
 def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings) -> int:
-    """Return how many layers of cells a row of blocks needs for growth within the limit along most lines."""
+    """Return how many layers a row of blocks needs so that cells grow within the limit along most lines."""
     alone = rows.across[np.nonzero(rows.across == row)[0]].min(axis=1) < 0  # blocks of no other row
     columns = np.concatenate(list(compress(rows.columns(layout, row), alone)))
     first, extra = settings.first, settings.constant - 1
@@ -39,10 +39,10 @@ def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings)
 
 
 def with_layers(layout: Layout, rows: WallRows, settings: Sequence[LayerSettings]) -> Layout:
-    """Return a fine layout with layers in its `rows` of blocks at walls; nodes move along lines across rows.
+    """Return a fine layout with layers in `rows`, rows of blocks at walls; `settings` has one entry per row.
 
-    `settings` has one entry per row. First cells have exactly the given height. Heights grow up to the size
-    of the cells beyond the layers.
+    Nodes move along the lines that cross a row. First cells have exactly the given height; cells grow to the
+    size of the cells beyond the layers.
     """
     mesh = layout.mesh
     moved = np.zeros(len(mesh.nodes), dtype=bool)

@@ -56,8 +56,8 @@ class Ring:
     def columns(self, places: Floats) -> tuple[Floats, Floats]:
         """Return lines (k, m, 2) from the wall to the outer edge, and the arc lengths (k,) of their starts.
 
-        The lines end at the arc lengths `places` (k,) on the outer edge. They are interpolated by cubics
-        through four columns, but never across a corner.
+        The lines end at the arc lengths `places` (k,) on the outer edge. Each is interpolated from four
+        columns by cubics, but never across a corner.
         """
         n = len(self.arcs)
         knots = np.append(self.front.curve.knots, self.front.length)
@@ -174,7 +174,7 @@ def room_between(rings: Mapping[int, Ring]) -> dict[int, Floats]:
 
 
 def mirrored(ring: Ring, loop: Loop, mirror: Mirror, total: float) -> Ring:
-    """Return a ring's mirror image around `loop`; the image of arc length s is at arc length `total` - s."""
+    """Return the mirror image of layers around `loop`; arc length s becomes arc length `total` - s."""
     arcs = _at_corners(loop, np.mod(total - ring.arcs[::-1], loop.length))
     levels = mirror.images(ring.levels[::-1])
     levels[:, 0] = loop.at(arcs)
@@ -208,7 +208,7 @@ def _ring(loop: Loop, arcs: Floats, levels: Floats) -> Ring:
 
 
 def column_weights(index: Floats, low: Indices, high: Indices) -> tuple[Floats, Indices]:
-    """Return weights (k, 4) of four columns for interpolation at `index` (k,), and the first columns (k,).
+    """Return the weights (k, 4) that interpolate four columns at `index` (k,), and the first columns (k,).
 
     `low` and `high` (k,) are the columns at the nearest corners; columns beyond them have zero weights.
     """

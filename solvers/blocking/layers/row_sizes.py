@@ -68,7 +68,7 @@ class RowSizes:
         return cls(loop, arcs, length, gap, on, first)
 
     def thickness(self, scale: float, settings: LayerSettings) -> Floats:
-        """Return the thickness (n,) of the layers, whose cells grow until they are square or fill the gap.
+        """Return the thickness (n,) of layers whose cells grow until they are square, limited by the gap.
 
         `scale` is a factor on the cell lengths along the wall.
         """

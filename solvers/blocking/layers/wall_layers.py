@@ -92,7 +92,7 @@ class WallLayers:
         return mirrors_of(self.rest) if mirrors_of(self.domain) else ()
 
     def of_ring(self, number: int) -> LayerSettings:
-        """Return the settings of the layers in the ring around loop `number`."""
+        """Return the settings of the layers around loop `number`."""
         return self.settings.at(self.domain.loops[number].names)
 
     @cached_property
@@ -107,7 +107,7 @@ class WallLayers:
         return replace(layout, mesh=made_symmetric(layout.mesh, images_of(layout.mesh, self.mirrors)))
 
     def is_free(self, number: int, mesh: QuadMesh, wake: Sequence[int]) -> bool:
-        """Return whether a wake reaches the outer loop and has room for layers on its whole length.
+        """Return whether a wake reaches the outer loop and has room for layers along its whole length.
 
         `wake` has the indices of the wake's nodes in `mesh`, beginning at the sharp edge of loop `number`.
         """

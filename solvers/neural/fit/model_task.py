@@ -53,7 +53,7 @@ class ModelTask(Task):
         return PaperOperator(name, self.frame.topology, {}, self.model, self.frame, self.arrays())
 
     def figures(self, epoch: int) -> dict[str, Any]:
-        """Return the epoch, and the results of `judged` for the training grids and for the test grids."""
+        """Return the epoch, and the errors of predicted training grids and test grids (see `judged`)."""
         operator, own = self.operator(), self.samples
         parts = {name: judged(operator, own.pick(own.where(name))) for name in ("train", "test")}
         return {"epoch": epoch, **{name: figures for name, figures in parts.items() if figures}}

@@ -49,9 +49,9 @@ class QuadUNetSizes:
 
 
 class QuadTask(Task):
-    """Training of the U-Net on grids by Winslow's equations and by the variational method.
+    """Training of the U-Net on two grids per domain: by Winslow's equations and by the variational method.
 
-    `training` and `held_out` are domains with both grids. `steps` is the number of steps of the whole run.
+    `training` and `held_out` are domains with their grids. `steps` is the number of steps of the whole run.
     `weights` has the weights of the loss terms, `initial` the initial weights of the network, by name.
     """
 
@@ -132,7 +132,7 @@ class QuadTask(Task):
         return held_out_figures(*(_in_plane(z) if self.around else z.numpy() for z in grids))
 
     def write(self, path: Path, *, recipe: Mapping[str, Any], figures: Mapping[str, Any]) -> None:
-        """Write the model file with averaged weights in float32, by their names in torch."""
+        """Write the model file with the averaged weights as float32 arrays, named as in torch."""
         state = self.mean.state_dict()
         arrays = {key: value.cpu().numpy().astype(np.float32) for key, value in state.items()}
         topology: Topology = "o" if self.around else "quad"
@@ -174,9 +174,9 @@ def run(
 ) -> Run:
     """Return the run that trains the U-Net; the last `held_out` domains are never trained on.
 
-    `initial` is an operator that gives the initial weights and the sizes. `weights` replaces the weights
-    `PARTS` of the terms of the loss. Raises InputError if less than one batch remains for training, if a
-    weight is unknown, negative or not finite, or if `initial` has no such network.
+    `initial` is an operator whose weights and sizes are used at the start. `weights` are weights of loss
+    terms, by default `PARTS`. Raises InputError if less than one batch remains for training, if a weight is
+    unknown, negative or not finite, or if `initial` has no such network.
     """
     sizes, kept = sizes or QuadUNetSizes(), plan.kept(len(data), held_out, "domains")
     if initial is not None:

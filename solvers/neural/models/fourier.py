@@ -164,7 +164,7 @@ class KNO(AlongXi):
         return xp.tanh(h + dense(xp, w, "local", g))
 
     def penalty(self, xp: Any, w: Weights, inputs: Weights) -> Any:
-        """Return the weighted mean square error of the inputs as the second decoder reconstructs them."""
+        """Return the weighted mean square error with which the second decoder reconstructs the inputs."""
         edges = inputs["edges"]
         observables = xp.tanh(dense(xp, w, "lift", edges))
         return self.reconstruction * ((dense(xp, w, "inputs", observables) - edges) ** 2).mean()

@@ -21,8 +21,8 @@ def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
 
     `wall` and `far` have the shape (batch, 2 MODES + 1). The inputs are three arrays:
 
-    - channels (batch, CHANNELS, COLUMNS): the harmonic extension of the walls and its slope along theta at
-      the depths `DEPTHS`, both divided by the size;
+    - channels (batch, CHANNELS, COLUMNS): at the depths `DEPTHS`, the harmonic extension of the walls and its
+      slope along theta, both divided by the size;
     - scalars (batch, SCALARS): the logarithm of the size, the height of the strip and its shear, each shifted
       so that its magnitude is about one;
     - size (batch,): the root mean square deviation of the walls from straight lines.

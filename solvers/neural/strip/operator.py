@@ -48,9 +48,9 @@ class StripOperator(Operator):
     def residual(self, wall: Complexes, far: Complexes, hand: NDArray[np.intp] | None = None) -> Complexes:
         """Return modes (batch, 2 MODES + 1, LEVELS): Winslow's solution minus the harmonic extension.
 
-        `wall` and `far` (batch, 2 MODES + 1) are Fourier modes of the strip's two sides. With `hand`
-        (batch,), results of `meshonet.geometry.polygon.mirror.handedness`, mirrored bodies get mirrored
-        grids. Where `hand` is 0, the output is symmetric. Modes that Picard steps cannot correct are 0.
+        `wall` and `far` (batch, 2 MODES + 1) are Fourier modes of the strip's two sides. `hand` (batch,) has
+        signs from `meshonet.geometry.polygon.mirror.handedness`: with them, mirrored bodies get mirrored
+        grids, and symmetric bodies symmetric grids. Modes that Picard steps cannot correct are 0.
         """
         if self.network is None:
             return np.zeros((*wall.shape, LEVELS), complex)

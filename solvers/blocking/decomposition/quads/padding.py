@@ -78,7 +78,7 @@ def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
 
 
 def along_wall(mesh: QuadMesh, first: int, last: int) -> list[int]:
-    """Return the nodes along a loop from node `first` to node `last`, or all around if both are the same."""
+    """Return the nodes along a boundary loop from `first` to `last`; the whole loop if both are equal."""
     after, chain = following(mesh), [first]
     while chain[-1] != last or len(chain) == 1:
         chain.append(int(after[chain[-1]]))

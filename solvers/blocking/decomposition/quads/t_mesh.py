@@ -35,7 +35,7 @@ class TMesh:
 
     @property
     def on_wall(self) -> Indices:
-        """(a,) index of the boundary loop on which each arc is, -1 for arcs inside the domain."""
+        """Index (a,) of the boundary loop on which an arc lies; -1 for arcs inside the domain."""
         return np.asarray(self.graph.trails.loop[self.trail])
 
 

@@ -14,7 +14,7 @@ Tables = tuple[Floats, Indices, Indices, Indices]
 
 
 def map_tables(seamless: SeamlessMap) -> Tables:
-    """Return the map as arrays for compiled code: coordinates, neighbours, edges of neighbours, and turns."""
+    """Return the map as arrays for compiled code."""
     coords = np.ascontiguousarray(seamless.corner_coords).view(np.float64).reshape(-1, 3, 2)
     return coords, seamless.surface.neighbours, seamless.surface.neighbour_edge, seamless.turns
 
@@ -36,7 +36,7 @@ class Trails:
     vertex: Indices  # (p,) vertex at the start of the piece, at walls; -1 elsewhere
 
     def total(self, trail: int) -> float:
-        """Return the length of the trail with this index, in coordinates of the map."""
+        """Return the length of a trail (a traced line of the map), in coordinates of the map."""
         return float(self.length[self.first[trail + 1] + trail])
 
     def at_vertex(self, vertex: int) -> tuple[int, float]:

@@ -25,7 +25,7 @@ CONE = 0.6  # cosine of the angle to the normal within which another wall counts
 
 @dataclass(frozen=True, eq=False)
 class WallSizes:
-    """Target edge lengths at samples of all boundary loops, the midpoints of short pieces of a loop."""
+    """Target edge lengths at points on all boundary loops."""
 
     largest: float  # largest size
     smallest: Floats
