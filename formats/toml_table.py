@@ -27,7 +27,7 @@ class Table:
 
     @contextmanager
     def located(self) -> Iterator[None]:
-        """Return a context in which errors get the place of this table in front of their own place."""
+        """Return a context that puts the place of this table in front of the places of errors."""
         try:
             yield
         except InputError as error:

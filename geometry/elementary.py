@@ -93,7 +93,7 @@ def functions_of(xp: Any) -> Any:
 def product(a: Any, b: Any) -> Any:
     """Return the matrix product ``a @ b`` in double precision, with sums in a fixed order.
 
-    For a stack of matrices `b` (..., inner, columns), terms are added one by one; `inner` should be small.
+    `b` may be a stack of matrices (..., inner, columns), for which `inner` should be small.
     """
     left, right = np.asarray(a), np.asarray(b)
     if left.dtype.kind == "c" or right.dtype.kind == "c":

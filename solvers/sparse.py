@@ -19,15 +19,15 @@ class SparsePattern:
     Parameters
     ----------
     size : number of rows, n.
-    rows, columns : (m,) position of each entry, on one side of the diagonal. Entries at the same position are
+    rows, columns : (m,) position of each entry, on one side of the diagonal. Entries at one position are
         added.
-    block : number of unknowns of a row, 1 or 2; with 2, entries are matrices (2, 2).
+    block : 1 if entries are numbers, 2 if they are matrices (2, 2).
 
     Attributes
     ----------
     arrays : the pattern as arrays for compiled code.
-    slot : (m,) index of the distinct entry to which each entry is added.
-    entries : number of distinct entries.
+    slot : (m,) number of each entry's position.
+    entries : number of different positions.
 
     >>> pattern = SparsePattern(2, np.array([0, 0, 1]), np.array([0, 1, 1]))
     >>> pattern.factor(np.array([2.0, 1.0, 2.0])).solve(np.array([3.0, 3.0])).tolist()

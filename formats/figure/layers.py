@@ -134,9 +134,10 @@ def rule(
     faint: bool,
     flipped: tuple[bool, bool] = (False, False),
 ) -> None:
-    """Draw grid lines of the cells `part`; `steps` are the steps between drawn lines i = const and j = const.
+    """Draw every n-th grid line of the cells `part`, and the last line.
 
-    The last line is always drawn. Where `flipped` is set, the lines are counted from the last line backwards.
+    `steps` has n for the lines i = const and for the lines j = const. With `flipped`, lines are counted
+    backwards.
     """
     from matplotlib.collections import LineCollection
 

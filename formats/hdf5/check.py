@@ -206,9 +206,9 @@ def checked(source: Source) -> Iterator[Checked]:
 
 @contextlib.contextmanager
 def opened(source: Source, *, texts: bool = True) -> Iterator[h5py.File]:
-    """Return a context with the HDF5 file `source`, open for reading; errors of HDF5 become InputError.
+    """Open the HDF5 file `source` for reading, as a context; errors of HDF5 become InputError.
 
-    Without `texts`, the check for damaged texts is left out, and texts of variable length must not be read.
+    `texts=False` skips the check for damaged strings; strings of variable length must then not be read.
     """
     import h5py
 

@@ -13,11 +13,11 @@ Facts: TypeAlias = Mapping[str, Sequence[str]]  # texts by key
 
 
 def facts_of(grid: Grid, block: int = 0, number: int = 0) -> dict[str, list[str]]:
-    """Return topology, name, patches and provenance of `grid` as lists of texts by key, for `grid_with`.
+    """Return topology, name, patches and provenance of a block as lists of texts by key, for `grid_with`.
 
-    The texts describe one `block`; only the first has connections and provenance. `number` is the number
-    of the grid in the file. A patch is ``side start stop name``; keys for its kind and its range along the
-    second direction are added if needed. An extruded grid has the texts of its planar grid.
+    `block` is the index of the block in `grid`, `number` the index of the grid in the file. Only block 0 has
+    connections and provenance. The text of a patch is ``side start stop name``; more keys have its kind and
+    its second range if needed. An extruded grid has the texts of its planar grid.
     """
     space = grid.form != "plane"
     if space:

@@ -40,9 +40,9 @@ def matched(connection: Connection, blocks: Sequence[Block]) -> Connection:
 
 
 def like_others(connection: Connection, motions: list[Motion]) -> Connection:
-    """Return a periodic connection; its motion is replaced by one of `motions` that nearly equals it.
+    """Return a periodic connection with one of `motions` that nearly equals its own motion.
 
-    If there is none, its motion is added to `motions`. Nearly equal motions thus become bitwise equal.
+    Without such a motion its own is kept, and added to `motions`. Nearly equal motions thus become identical.
     """
     for known in motions:
         for each in (connection, connection.reversed()):

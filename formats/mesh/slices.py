@@ -57,11 +57,11 @@ class _Slice(NamedTuple):
 def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> list[IndexedNodes]:
     """Return the nodes of each block of a file, given as coordinates x, y[, z] of shape (n1, n2, n3) each.
 
-    A block is a slice if it has one or two planes of nodes, and one coordinate is constant in each plane. If
-    all blocks are slices at the same positions, they are planar, and this coordinate is left out. Otherwise,
-    or in the context `surfaces_wanted`, a block with one plane of nodes is a surface patch; other blocks are
-    volumes. Left-handed planar blocks and volumes are reversed along i. `places` are the names of the blocks
-    in messages. Raises InputError if a block has no cells.
+    Blocks are planar if each has one or two planes of nodes in which a coordinate is constant, with the same
+    values in all blocks; this coordinate is left out. Otherwise, or in the context `surfaces_wanted`, a block
+    with one plane of nodes is a surface patch; other blocks are volumes. Left-handed planar blocks and
+    volumes are reversed along i. `places` are names of blocks in messages. Raises InputError if a block has
+    no cells.
     """
     with np.errstate(all="ignore"):  # what is not finite is refused later, with its place
         slices = []

@@ -32,9 +32,9 @@ from meshonet.geometry.errors import in_place
 
 @dataclass(frozen=True)
 class FileBlock:
-    """A block of a file: coordinates x, y[, z], each (n1, n2, n3), its name, and its place for messages.
+    """A block of a file: its name and coordinates x, y[, z], each of shape (n1, n2, n3).
 
-    `iblank` has the number of nodes with each iblank value. `facts` are its metadata (`facts_of`).
+    `place` names it in messages. `iblank` has the number of nodes by iblank value; `facts`: see `facts_of`.
     """
 
     coordinates: Sequence[Floats]
@@ -63,7 +63,7 @@ def _described(block: FileBlock) -> Floats:
 def grid_of_block(coordinates: Sequence[Floats], facts: Facts, name: str) -> Grid:
     """Return the grid of a file with one block, using its metadata `facts` if there are any.
 
-    Raises InputError if the metadata do not match the nodes, and in the cases of `grids_of_file`.
+    Raises InputError as `grids_of_file`, and if the metadata do not match the nodes.
     """
     if facts.get("topology"):
         return grid_with(nodes_by_facts(coordinates, facts), facts, name)

@@ -19,7 +19,7 @@ _SIDES: dict[tuple[int, int], Side] = {place: side for side, place in PLACES.ite
 class FaceWindow(NamedTuple):
     """A rectangle of nodes on a face of a block, given by the indices, from 0, of two opposite corners.
 
-    Along reversed directions of a connection, the last corner has a smaller index than the first.
+    In connections, the last index is below the first where the direction is reversed.
     """
 
     block: int
@@ -38,7 +38,7 @@ class Face(NamedTuple):
 class Pair(NamedTuple):
     """Two connected rectangles of nodes, and the name of the connection in the file.
 
-    `partner` has, for each direction of the first block, the donor's direction along the same lines.
+    ``partner[k]`` is the direction of the donor block that corresponds to direction k of the first block.
     """
 
     own: FaceWindow

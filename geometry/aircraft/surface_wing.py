@@ -52,7 +52,7 @@ class SurfaceWing:
 
     @classmethod
     def ending(cls, strips: tuple[Floats, ...], name: str = "wing") -> Self:
-        """Return the wing of `strips`, up to the last station; a tip that becomes thin is cut off.
+        """Return the wing with the surface `strips`; a tip that becomes thin is cut off.
 
         Raises InputError if the wing has no thickness.
         """

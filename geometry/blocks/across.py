@@ -41,13 +41,13 @@ def planar(grid: Grid) -> None:
 
 
 def rows_at(grid: Grid, patch: Patch, depth: int) -> Floats:
-    """Return `depth` rows of nodes, (depth, n, d) or (depth, n, m, 3), from a patch into its block."""
+    """Return `depth` rows of nodes, (depth, n, d) or (depth, n, m, 3), of which the first is on a patch."""
     counts = face_counts(grid.blocks[patch.block].counts, patch.side)
     return rows_beside(grid, patch.block, patch.side, patch.range(counts), depth)
 
 
 def rows_beside(grid: Grid, block: int, side: Side, span: Range, depth: int) -> Floats:
-    """Return `depth` rows of nodes, (depth, n, d) or (depth, n, m, 3), from part `span` of a side inwards."""
+    """Return `depth` rows of nodes, (depth, n, d) or (depth, n, m, 3), the first on part `span` of a side."""
     axis, end = PLACES[side]
     nodes = np.moveaxis(grid.blocks[block].nodes, axis, 0)
     return (nodes[::-1] if end else nodes)[(slice(depth), *(slice(first, last + 1) for first, last in span))]

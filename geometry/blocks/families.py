@@ -18,9 +18,9 @@ from meshonet.geometry.blocks.grid import Grid
 class Member:
     """The grid lines of a block along the direction `axis` (0 is xi, 1 is eta), as a part of a family.
 
-    A family contains all grid lines that continue each other from block to block. If `aligned`, line k
-    continues line k of the family's first block; if also `flipped`, that block's k-th line from the end. If
-    not `aligned`, only some of the lines continue lines of the first block.
+    A family contains grid lines that continue each other from block to block. If `aligned`, each line
+    continues a line of the family's first block. The two have the same number or, if `flipped`, the same
+    number counted from the other end. In volumes `flipped` has no meaning.
     """
 
     block: int
@@ -38,10 +38,7 @@ def joins_whole_sides(grid: Grid, connection: Connection) -> bool:
 
 
 def families(grid: Grid) -> list[list[Member]]:
-    """Return the families of grid lines; each pair of a block and a direction is in exactly one family.
-
-    In volumes, `Member.flipped` has no meaning.
-    """
+    """Return the families of grid lines: sets of lines that continue each other from block to block."""
     beyond: dict[tuple[int, int], list[tuple[tuple[int, int], bool, bool]]] = {}
     for each in grid.connections:
         own, donor = (each.block, PLACES[each.side][0]), (each.donor, PLACES[each.donor_side][0])

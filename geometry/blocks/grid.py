@@ -237,11 +237,11 @@ class Grid(Connected):
         return inside
 
     def walls(self) -> list[Patch]:
-        """Return the walls: patches of kind wall, and on a body also patches of unknown kind.
+        """Return the walls: patches of kind wall and, in some grids of one block, patches of unknown kind.
 
-        If a four-sided grid of one block has no patch of kind wall, its walls are the patches of unknown kind
-        on south and north. In a grid of several blocks only patches of kind wall are walls. The default kind
-        of a patch follows from its name.
+        In O and C grids, patches of unknown kind on the body are walls. In a four-sided grid without a patch
+        of kind wall, patches of unknown kind on south and north are walls. The default kind of a patch
+        follows from its name.
         """
         outer = self.outer_patches()
         body = ("south",) if self.around_body else ()

@@ -133,9 +133,9 @@ class SixFaces:
         )
 
     def at(self, knots: list[Floats], places: list[Floats]) -> "SixFaces":
-        """Return the faces interpolated from the parameters `knots` of nodes to new parameters `places`.
+        """Return the faces with new nodes, interpolated by cubic splines.
 
-        Both lists have an array, increasing from 0 to 1, for each direction. Nodes of an edge stay on it.
+        `knots` are the parameters of present nodes, `places` of new nodes: for each direction, from 0 to 1.
         """
         made: dict[Side, Floats] = {}
         for side in FACES:
@@ -173,7 +173,7 @@ def edge_of(face: Floats, side: Side, second: Side) -> Floats:
 
 
 def share_edges(faces: dict[Side, Floats]) -> None:
-    """Make shared edges bitwise equal, in place: in the order of `FACES`, the first face determines them."""
+    """Make shared edges exactly equal, in place: the nodes of the face that is first in `FACES` are kept."""
     for side in FACES:
         faces[side] = np.array(faces[side])
     for side, second in edges():

@@ -81,11 +81,11 @@ def mirrored(nodes: Floats) -> Complexes:
 
 
 def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, tuple[int, ...]]:
-    """Return the conformal map of a body, the points (n,) of its wall in the strip, and its corners' indices.
+    """Return the conformal map of a body, its wall (n,) mapped to the strip, and the indices of its corners.
 
-    `wall` (n,) runs counter-clockwise from the trailing edge, without its repeated first node. A map
-    (`Corner`) straightens each corner of a blunt trailing edge. The order of two such maps changes the
-    result. With `swap` the second corner comes first, so that a mirrored body has the mirrored result.
+    `wall` (n,) runs counter-clockwise from the trailing edge, without its repeated first node. Corners of a
+    blunt trailing edge are straightened one after another, with `swap` the second first. A mirrored body
+    needs this for the mirrored result.
 
     Raises InputError: fewer than 8 nodes, or a wall that does not wind once around its middle.
     """

@@ -6,9 +6,9 @@ from meshonet.geometry.arrays import Floats, Indices
 
 
 def inner_slopes(h: Floats, delta: Floats) -> Floats:
-    """Return slopes (n-1, ...) at the points between n intervals with lengths `h` and chord slopes `delta`.
+    """Return slopes (n-1, ...) between n intervals that have the lengths `h` and mean slopes `delta`.
 
-    They are weighted harmonic means of the chord slopes before and after a point; 0 if these differ in sign.
+    A slope is a weighted harmonic mean of the mean slopes on both sides, or 0 if these differ in sign.
     """
     w1, w2 = 2 * h[1:] + h[:-1], h[1:] + 2 * h[:-1]
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -91,7 +91,7 @@ class Loop:
     def corner_cells(self) -> NDArray[np.intp]:
         """Number of cells (c,) that should meet at each corner, 1 to 4: about one per 90 degrees.
 
-        At angles of exactly 135 and 225 degrees, to rounding, the number is two.
+        Corners of 135 and of 225 degrees get two cells.
         """
         if self.cells:
             return np.array(self.cells, dtype=np.intp)

@@ -60,8 +60,8 @@ def sizes_by_bend(loop: Loop, largest: float, turn: float) -> tuple[Floats, Floa
 def wall_bend(loop: Loop, arcs: Floats, window: int) -> Floats:
     """Return the absolute curvature (n,) of a loop at ascending arc lengths (n,), in radians per length.
 
-    It is averaged over `window` of the `arcs` on either side. Turning at corners does not count. All corners
-    must be among `arcs`.
+    It is averaged over `window` points before and behind each point. Corners, which must be among `arcs`, do
+    not count.
     """
     along = loop.tangent(arcs)
     direction = arctan2(along[:, 1], along[:, 0])

@@ -48,7 +48,7 @@ def with_tied_sides(mesh: QuadMesh) -> QuadMesh:
 
 
 def matched_nodes(mesh: QuadMesh) -> Floats:
-    """Return the nodes (n, 2); second sides of periodic pairs become bitwise the shifted first sides."""
+    """Return the nodes (n, 2); each second periodic side becomes exactly equal to the shifted first side."""
     nodes, sides = mesh.nodes.copy(), sides_of(mesh)
     for _, first, _ in sides:
         nodes[first] = rounded(nodes[first], mesh.domain)

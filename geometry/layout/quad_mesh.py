@@ -44,7 +44,7 @@ class Places:
         return np.asarray(on[np.argsort(self.arc[on], kind="stable")])
 
     def take(self, nodes: Indices) -> Places:
-        """Return the places of the given nodes, without periodic partners."""
+        """Return the places of the nodes with indices `nodes`, without periodic partners."""
         cleared = np.full(len(nodes), -1, dtype=np.intp)
         return Places(self.loop[nodes], self.arc[nodes], self.cells[nodes], cleared)
 

@@ -31,9 +31,9 @@ class BlockCounts:
 class BlockFigures(BlockCounts):
     """Counts, angles and grid lines of a multi-block grid; `nodes` is the number of distinct nodes.
 
-    `deviation` is the deviation of corner angles from 90 degrees, in degrees; at a corner of a volume, the
-    largest of three. Its mean is over all corners. Its percentile is over all cells, each with its largest
-    deviation.
+    `deviation` is the difference of corner angles from 90 degrees. At a corner of a volume three angles meet;
+    the largest difference counts. The mean is over all corners. The percentile is over all cells, each with
+    its largest difference.
     """
 
     nodes: int
@@ -65,8 +65,8 @@ LINES = ("growth_inside", "growth_across", "bend_inside", "bend_across")  # fiel
 def block_figures(grid: Grid, quality: Quality | None = None, run: Lines | None = None) -> BlockFigures:
     """Return the figures of a multi-block grid.
 
-    For volumes, `quality` is the quality of the grid if it has been measured. Percentiles of a volume are
-    computed unless `quality` is given without them. `run` has growth and turning, if known already.
+    `quality` is the quality of a volume grid, if it has been measured. If it has no percentiles, the figures
+    have none. `run` are the figures of grid lines, if known already.
     """
     if grid.form == "volume":
         from meshonet.geometry.quality.volumes import measure_volumes

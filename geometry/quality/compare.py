@@ -25,7 +25,7 @@ class Difference:
 
 
 def compare(grid: Grid, reference: Grid) -> Difference:
-    """Return the distances of nodes from the nodes of `reference`. Raises InputError: other node counts."""
+    """Return distances of nodes from the nodes of `reference`. Raises InputError if node counts differ."""
     many = "blocks" in (grid.topology, reference.topology)
     _check_sizes(grid, reference, many=many)
     pairs = zip(grid.blocks, reference.blocks, strict=True)

@@ -74,7 +74,7 @@ class Tally:
         along: str | None,
         values: Sequence[Floats | Singles],
     ) -> None:
-        """Add `values` with their `count`, sum `total`, and maximum `high`, which is at node or cell `at`."""
+        """Add `values`; their `count`, sum `total`, maximum `high` and its node or cell `at` are given."""
         if high > self._max:
             self._max, self._at, self._along = high, at, along
         self._total += total

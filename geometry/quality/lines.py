@@ -104,8 +104,8 @@ def part_of_values(
     """Return growth and turning of the grid lines along `axis` through an array of nodes.
 
     `values` are growth and, if computed, turning, each (m, n[, l]). `place` (block, i, j[, k]) is the first
-    node. `inside` says that the nodes are inside the block, not on a side. With `kept`, values are stored for
-    percentiles.
+    node. `inside` says whether nodes are inside the block or on a side, `kept` whether percentiles are
+    wanted.
     """
     tallies = Tally(kept=kept), Tally(kept=kept)
     for tally, each in zip(tallies, values, strict=False):

@@ -271,7 +271,7 @@ _BEYOND = "beyond the limits of OpenFOAM's checkMesh"
 
 
 def with_checkmesh_notes(notes: tuple[str, ...], grid: object) -> tuple[str, ...]:
-    """Return `notes` and the `checkmesh_notes` of the grid; only `notes` if one is on checkMesh already."""
+    """Return `notes`, and the `checkmesh_notes` of the grid unless `notes` has them already."""
     if not isinstance(grid, Grid) or any(note.startswith(_BEYOND) for note in notes):
         return notes
     return (*notes, *checkmesh_notes(grid))

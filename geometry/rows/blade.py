@@ -153,7 +153,7 @@ class BladeSurface:
         return CubicTable(values, self.knots)
 
     def at(self, u: Floats, h: Floats) -> Floats:
-        """Return s and theta (p, m, 2) at places `u`, (m,) or (p, m), around the blade, at `h` (p, m)."""
+        """Return s and theta (p, m, 2) at places `u`, (m,) or (p, m), and heights `h` (p, m) on the blade."""
         return self.crossings(self.lines(u.ravel()), h, len(h) if u.ndim == 1 else 1)
 
     def crossings(self, lines: CubicTable, h: Floats, levels: int = 1) -> Floats:
@@ -189,7 +189,7 @@ class BladeSurface:
 
 
 def clustered(count: int) -> Floats:
-    """Return an even number of places u (count,) around a blade, clustered at both edges."""
+    """Return `count` places u around a blade, 0 to 1, clustered at both edges; `count` must be even."""
     half = count // 2
     side = 0.25 * (1.0 - cos(_HALF_TURN * np.arange(half) / half))
     return np.concatenate([side, 0.5 + side])

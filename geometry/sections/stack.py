@@ -103,7 +103,7 @@ class Stack:
 
     @property
     def span(self) -> int | None:
-        """Number of nodes along the span; None unless the numbers of all panels are given."""
+        """Number of nodes along the span; None unless all sections after the first give `nodes`."""
         cells = [each for each in self.panel_cells if each is not None]
         return sum(cells) + 1 if len(cells) == len(self.panel_cells) else None
 

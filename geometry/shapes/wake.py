@@ -110,9 +110,9 @@ def growing(first: float, length: float, cells: int) -> Floats:
 
 
 def rise(behind: Floats, begin: float = _FROM) -> Floats:
-    """Return by how many chords (n,) first cells at a wake are higher than at the trailing edge.
+    """Return heights (n,) of first cells along a wake, minus the height at the trailing edge, in chords.
 
-    `behind` (n,) are distances from the edge in chords. Most of the rise is beyond the distance `begin`.
+    `behind` (n,) are distances from the trailing edge in chords. Most of the increase is beyond `begin`.
     """
     return np.asarray(_RISE * behind**2 / ((behind + begin) * (1.0 + behind / _UP_TO)))
 

@@ -42,8 +42,8 @@ class Sampling:
         Length of the wall cells at the leading and at the trailing edge, in chords.
     far_field : float, optional
         Smallest distance of the outer boundary from the middle of the body, in chords of an airfoil or
-        extents of another body. None: `DEFAULT_FAR_FIELD`, or no far field. For marching
-        from a surface: the distance in the unit of the surface.
+        extents of another body. None: `DEFAULT_FAR_FIELD` if the grid has a far field. For marching from a
+        surface: the distance in the unit of the surface.
     corners : tuple of 4 int, optional
         Indices, from 0, of the points that become the corners of a quad domain.
     te : {'auto', 'exact', 'round', 'wedge'}, optional
@@ -54,12 +54,12 @@ class Sampling:
     wake_nodes : int, optional
         Number of nodes along the wake with the trailing edge. None: the cell length at this edge decides.
     base_nodes : int, optional
-        Number of nodes on a blunt base, including both corners; odd for an O grid. None: as its width needs.
+        Number of nodes on a blunt trailing edge with both corners; odd for an O grid. None: by its width.
     base : float, optional
         Thickness in chords to which thinner trailing edges of airfoils are opened.
     smooth : float, optional
         Largest distance, in chords, of smoothing splines from the points of an airfoil; three standard
-        deviations of the noise are a good choice. A base of at most this height is closed. Needs SciPy.
+        deviations of the noise suit. A trailing edge of at most this thickness is closed. Needs SciPy.
     refined : int, optional
         The node indices of corners are multiples of this number, so that the grid can be coarsened by it.
     viscous : bool, optional
@@ -124,7 +124,7 @@ class Sampling:
             raise InputError(problem, "give four point indices")
 
     def corner_steps(self, cells: int) -> tuple[int, ...]:
-        """Return steps k, best first: node indices of corners on a wall of `cells` are multiples of k.
+        """Return numbers k, best first, by which node indices of corners on a wall of `cells` are divisible.
 
         >>> Sampling().corner_steps(404), Sampling().corner_steps(398), Sampling(refined=8).corner_steps(400)
         ((4, 2, 1), (2, 1), (8,))
@@ -135,7 +135,7 @@ class Sampling:
 
     @property
     def radius(self) -> float:
-        """Radius of the far field in chords. Raises InputError: a value that is not above 1."""
+        """Radius of the far field in chords. Raises InputError if it is not above 1."""
         radius = DEFAULT_FAR_FIELD if self.far_field is None else self.far_field
         if not 1.0 < radius <= 1e6:
             raise InputError(f"{radius:g} chords", "use more than 1 and at most 1e6", parameter="far_field")

@@ -39,10 +39,10 @@ def arcs_by_curvature(
 ) -> Floats:
     """Return arc lengths (cells + 1,) from one end of the trailing edge around the nose to the other.
 
-    The cell size h is a smooth minimum, 1/h⁴ = Σ 1/hₖ⁴, of four sizes. Two start at the trailing and the
-    leading edge and increase by `GROWTH` times the distance. One is the length on which the curve turns by
-    `TURN`. The last is a constant that gives the requested number of cells. If cells are too few, growth
-    rises first (see `hurried` and `based`), then sizes by curvature and at the leading edge, last all sizes.
+    The cell size h combines four sizes, 1/h⁴ = Σ 1/hₖ⁴. The first two start at the trailing and at the
+    leading edge and increase by `GROWTH` times the distance. The third is the length on which the curve turns
+    by `TURN`. The fourth is a constant that gives the requested number of cells. If cells are too few, first
+    the growth is increased, then sizes by curvature and at the leading edge, at last all sizes.
 
     Parameters
     ----------
@@ -50,10 +50,10 @@ def arcs_by_curvature(
     cells : number of cells between the two ends.
     chord : chord length; the curvature is averaged over 0.2 % of it.
     steps : cell sizes at the trailing and at the leading edge.
-    exact : whether each size is prescribed, and met within 0.5 % if twelve corrections suffice.
+    exact : for each of the `steps`, whether it is prescribed, to be met within 0.5 %.
     hurried : whether growth may be `HURRY` times as fast if cells are too few.
     at_edge : logarithm of the growth ratio next to the trailing edge, if larger than `GROWTH`.
-    based : whether the ends are corners of a base, at which cells are small.
+    based : whether the ends are the corners of a blunt trailing edge, at which cells are small.
     """
     lower, nose, upper = stations
     s = _samples(stations, steps)

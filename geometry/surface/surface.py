@@ -34,9 +34,9 @@ class Surface:
     nodes : (n, 3) the table of nodes, in any unit of length.
     lattices : for each patch, the indices (ni, nj) of its nodes; the normal i x j points outwards.
     names : names of the patches, ``wall`` if the file has no names.
-    twin : (4 m,) for each half-edge of `quads`, the opposite half-edge; -1 at open edges.
-    ring, valence : (n, w) neighbours in order around each node, and (n,) their number.
-    planes : planes normal to an axis that contain open edges, with the surface on one side of them.
+    twin : (4 m,) opposite half-edge of each half-edge (edge of one quad); -1 at open edges.
+    ring, valence : (n, w) neighbours in order around each node, and (n,) the number of neighbours.
+    planes : planes of symmetry, normal to an axis, in which open edges lie.
     notes : sentences on what was changed or assumed.
     """
 

@@ -29,8 +29,8 @@ _METHODS = {"conformal": "conformal map"}  # descriptions of methods whose names
 class Report(Timed):
     """Report of a grid.
 
-    `wake` is the number of cells along the wake of a C grid, else 0. `seconds` are the wall-clock seconds of
-    each stage: read, boundary, load (of modules and models), grid, guard, quality, write, and total.
+    `wake` is the number of cells along the wake of a C grid, else 0. `seconds` are the wall-clock seconds by
+    stage: read, boundary, load (modules, models), grid, guard (repair of cells), quality, write, total.
     """
 
     method: str

@@ -189,7 +189,7 @@ class Session:
     def watch(self) -> None:
         """From one second on, show on a terminal which stage of a single input is in progress.
 
-        Nothing is shown with JSON, or if standard output is a pipe, since its reader may show a status too.
+        Nothing is shown with JSON, or if standard output is a pipe.
         """
         leads = os.environ.get("RANK", "0") == "0"  # of several processes under torchrun
         if self.live and leads and not (self.as_json or self.batch or self._line or _is_pipe(1)):

@@ -38,7 +38,7 @@ _POLE_CELL = 0.5  # ratio of the cells at nose and tail to the cells beside the 
 
 @dataclass(frozen=True, eq=False)
 class LevelPlan:
-    """Numbers of cells, the same on all levels (surfaces around the body), and the ends of the body."""
+    """Numbers of cells on a level (surface around the body); they are the same on all levels."""
 
     columns: tuple[ColumnPlan, ...]  # plans of the columns, from nose to tail
     between: tuple[int, ...]  # number of cells between each column and the next

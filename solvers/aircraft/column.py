@@ -71,9 +71,9 @@ class ColumnPlan:
         return before, sum(n * each.edge for n, each in zip(shares, self.collars, strict=True))
 
     def with_bands(self, cells: int, low: int | None = None) -> ColumnPlan:
-        """Return the plan with `cells` cells above and below the collars around wings, `low` of them below.
+        """Return the plan with `cells` cells in total below and above the collars (cells around wings).
 
-        By default, the ratio of cells above and below stays the same.
+        `low` cells are below; by default the same fraction as before.
         """
         first, *others = self.collars
         if self.fin_alone:
@@ -121,7 +121,7 @@ class ColumnLevel:
         return cls(plan, tuple(levels))
 
     def with_counts(self, plan: ColumnPlan) -> ColumnLevel:
-        """Return the column with the cell counts of a `plan`; the collars around wings keep their nodes."""
+        """Return the column with the cell counts of a `plan`; nodes beside wings and fins stay."""
         levels = (replace(each, plan=counts) for each, counts in zip(self.levels, plan.collars, strict=True))
         return replace(self, plan=plan, levels=tuple(levels))
 
@@ -131,7 +131,7 @@ class ColumnLevel:
         return replace(self, crown=zeta + 0.5 * (fin.levels[-1].hole.zeta - zeta))
 
     def beside_wing(self, wing: ColumnLevel, side: Side) -> ColumnLevel:
-        """Return this fin's column with theta below the fin nearly as on `side` of the column `wing`."""
+        """Return this column of a fin, with theta below the fin similar to theta on `side` of `wing`."""
         own, others = self.low, side[0][: len(self.low), 1]
         keel = self.zeta + _FOLLOWING * (wing.zeta - self.zeta)
         return replace(self, below=_followed(own, others), keel=keel)

@@ -37,10 +37,10 @@ def arcs_beyond(lengths: Floats, first: Floats, cells: int) -> Floats:
 
 
 def last_cells(points: Floats, section: Indices, even: Floats, first: float, growth: float) -> Floats:
-    """Return the heights (p,) of cells at the level of the wing tip, on lines through `points` (p, 3).
+    """Return heights (p,) of the cells at the level of the wing tip, at `points` (p, 3) on that level.
 
-    On the lines with indices `section`, which reach the wing, heights are `first`. Elsewhere they increase
-    with the distance from the wing, and are between `first` and `even` (p,).
+    Heights are `first` at the points with indices `section`, which are on the wing. With the distance from
+    the wing they increase up to `even` (p,).
     """
     wing = points[section]
     away = np.array([norms(wing - point).min() for point in points])

@@ -71,10 +71,10 @@ def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Fl
 def across_tip(
     low: Floats, high: Floats, ring: Indices, wing: WingLines, first: float
 ) -> tuple[Floats, Floats]:
-    """Return the nodes `low` below and `high` beyond a tip, moved to make cells at the tip less oblique.
+    """Return the nodes `low` below and `high` beyond a wing tip, moved so that its cells are less oblique.
 
-    `ring` (n, m) are indices of the lines around the wing. The grid surface at the tip becomes more nearly
-    normal to these lines. Moves fade to 0 at the ends of lines. First cells stay `first` high.
+    `ring` (n, m) are indices of the lines around the wing. Displacements fade to 0 at the ends of these
+    lines. First cells stay `first` high.
     """
     level = high[0, ring]
     along, lines = wing.axis, low[-1, ring[:, 0]] - low[-2, ring[:, 0]]

@@ -27,9 +27,9 @@ class WantedCounts:
         self.first = np.cumsum([0, *(len(edge) - 1 for edge in chords.edges)])[:-1]
 
     def counts(self, metric: SizeMetric, multiple: int = 1) -> Indices:
-        """Return the cell counts (chords,) of chords: the multiples of `multiple` nearest to target numbers.
+        """Return cell counts (chords,) for each chord (row of blocks), as multiples of `multiple`.
 
-        The target number of a chord is the weighted geometric mean of the target numbers of its edges.
+        They are close to the numbers of cells that the target sizes `metric` give for the edges of blocks.
         """
         parts = [self.length / near.length(metric) for near in self.near]
         chords = self.chords
@@ -43,8 +43,8 @@ def metric_places(chords: Chords, counts: Indices, metric: SizeMetric) -> list[F
     """Return, for each edge of the blocks, the positions (cells + 1,) of its new nodes.
 
     A position is a fractional index: 2.5 is midway between the old nodes 2 and 3. `counts` (chords,) are the
-    new numbers of cells. Cell lengths follow the target sizes `metric`. Positions on opposite edges of a
-    block are averaged, so that the grid lines between them are nearly straight.
+    new numbers of cells of chords (rows of blocks). Cell lengths follow the target sizes `metric`. Positions
+    on opposite edges of a block are averaged.
     """
     nodes = chords.layout.mesh.nodes
     cells = counts[chords.chord]

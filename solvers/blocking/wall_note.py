@@ -42,7 +42,7 @@ def wall_note(grid: Grid, domain: Domain, names: Collection[str], first: float) 
 
 
 def without_layers(domain: Domain) -> list[str]:
-    """Return a list with a note if outer sides may be walls, but get layers only if they are named."""
+    """Return a note in a list if outer sides have no layers only because they are not named as walls."""
     outer = domain.loops[0].names
     if 0 in domain.layered_loops or len(outer) == 1:
         return []

@@ -13,7 +13,7 @@ from meshonet.solvers.stages import Timings
 
 
 def make_passage(shape: DomainShape, request: BlockRequest) -> Solution:
-    """Return the grid of a passage; the blade is the only hole of the domain, the request has the pitch.
+    """Return the grid of a blade passage; the only hole of `shape` is the blade, and `request` has the pitch.
 
     Raises InputError as `make_blocks`, and for options that do not apply to cascades. Raises NoValidGridError
     if cells are folded.

@@ -47,8 +47,8 @@ def barycentric(nodes: Floats, weights: Floats, x: Floats) -> Floats:
 class Panels(NamedTuple):
     """Consecutive intervals of eta (panels): panel k covers the grid levels ``ends[k]`` to ``ends[k + 1]``.
 
-    `eta` (panels * NODES,) are interpolation points in the panels. `matrix` (NODES, levels) has a column for
-    each level: the weights of the points of its panel. Without panels, `ends` has one entry.
+    `eta` (panels * NODES,) are interpolation points. A column of `matrix` (NODES, levels) has the weights
+    with which the points of a panel give the value on a level. Without panels, `ends` has one entry.
     """
 
     ends: list[int]

@@ -42,7 +42,7 @@ class StripGrid:
         self._panels = panels(eta, height, spread, 1, nj - outer)
 
     def at(self, rows: Sequence[int], j: int) -> Complexes:
-        """Return the points w at nodes with indices `rows` along the wall, on a level `j` near the wall."""
+        """Return nodes w in the strip, with indices `rows` along the wall, on a level `j` near the wall."""
         theta = self.theta[list(rows)]
         low = product(self._c, interpolation(self.eta[j : j + 1].tobytes())[:, 0])
         k, high = self._near.at(float(self.eta[j]))

@@ -20,8 +20,7 @@ FEWEST = 256  # columns
 def columns(modes: Complexes) -> Floats:
     """Return values (Q, 2, width) at Q angles, from which windowed sums give m Fourier series at any angle.
 
-    The second axis is real and imaginary part; the last is the series, padded with zeros to a multiple of
-    `LANES`.
+    The axes are angle, real and imaginary part, and series, padded with zeros to a multiple of `LANES`.
 
     `modes` (m, 2 K + 1) have the order k = 0 .. K, -K .. -1. Q is a power of two above 4 K. The sum at theta
     has `TAPS` terms::
@@ -30,8 +29,8 @@ def columns(modes: Complexes) -> Floats:
         w(x) = exp(b (sqrt(1 - x^2) - 1)),  |x| < 1,  x in units of half the window
         v_k = sum_q w(theta_q) exp(-i k theta_q)
 
-    The error is about exp(-pi TAPS sqrt(1/2)) = 3e-14 of the largest mode. Barnett,
-    Magland & af Klinteberg, SIAM J. Sci. Comput. 41 (2019) C479.
+    The error is about exp(-pi TAPS sqrt(1/2)) = 3e-14 of the largest mode. Barnett, Magland & af Klinteberg,
+    SIAM J. Sci. Comput. 41 (2019) C479.
     """
     count, wide = len(modes), -(-len(modes) // LANES) * LANES
     highest = modes.shape[1] // 2

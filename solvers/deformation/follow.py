@@ -92,7 +92,7 @@ class Follow:
         return there
 
     def boundary_to(self, to: Floats) -> Floats:
-        """Return nodes (n, d): moved nodes at `to` (n, d), sliding nodes displaced, others unchanged."""
+        """Return the nodes (n, d) after boundary nodes have moved; `to` (n, d) has the given positions."""
         nodes = self.table.nodes
         there = np.where(self.sources.moved[:, None], to, nodes)
         if self.slide is not None:

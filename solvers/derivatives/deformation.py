@@ -21,8 +21,8 @@ Lines = dict[str, Floats]
 class DeformationDerivative:
     """A planar grid deformed in one step, and the derivative of its nodes with respect to its wall nodes.
 
-    Raises InputError as `meshonet.deform`, or if the grid is a volume. Raises NoValidGridError if cells fold
-    in one step.
+    Raises InputError in the cases of `meshonet.deform`, and for volumes. Raises NoValidGridError if cells
+    fold.
     """
 
     grid: Grid  # the deformed grid
@@ -46,7 +46,7 @@ class DeformationDerivative:
         self._there = self._follow.boundary_to(targets.nodes)
 
     def along(self, moves: Mapping[str, Floats]) -> list[Floats]:
-        """Return the linear response (ni, nj, 2) of each block's nodes to displacements (n, 2) of walls."""
+        """Return for each block the linear response (ni, nj, 2) of its nodes to wall displacements (n, 2)."""
         move = np.zeros_like(self._to)
         for name, values in moves.items():
             move[self.walls[name]] = self._checked(name, values)

@@ -144,7 +144,7 @@ def _weights(grid: Grid) -> Weights:
 
 
 def aspect_slope(nodes: Floats) -> Floats:
-    """Return the derivative (2, ni, nj) of `functional.aspect_of` with respect to `nodes` (2, ni, nj)."""
+    """Return the derivative (2, ni, nj) of the aspect ratio `functional.aspect_of` by `nodes`."""
     slope = np.zeros_like(nodes)
     walls, sides = nodes[:, :, :: nodes.shape[2] - 1], nodes[:, :: nodes.shape[1] - 1]
     along, across = np.diff(walls, axis=1), np.diff(sides, axis=2)

@@ -26,7 +26,7 @@ class Walls:
     round: Floats  # (e,) value to add to the arc length of the second node: 0 or the length of the loop
 
     def range_of(self, loop: int) -> tuple[int, int, int, int]:
-        """Return first and end index of a loop's nodes, then first and end index of its edges."""
+        """Return four indices: first and end of a loop's nodes, first and end of a loop's edges."""
         of_edge = self.loop[self.edges[:, 0]]
         n = [int(k) for k in np.searchsorted(self.loop, [loop, loop + 1])]
         e = [int(k) for k in np.searchsorted(of_edge, [loop, loop + 1])]

@@ -29,9 +29,9 @@ class Edge(NamedTuple):
 
 
 def sharpest_edge(ring: Floats) -> Edge | None:
-    """Return the sharpest convex corner, of at least 60 degrees, of a closed, clockwise wall (n, 2), or None.
+    """Return the convex corner at which a wall turns most; None if no corner turns by at least 60 degrees.
 
-    The first node is not repeated at the end.
+    `ring` (n, 2) is a closed, clockwise wall without its repeated first node.
     """
     turn = -turning(ring, closed=True)
     k = int(np.argmax(turn))
@@ -71,7 +71,7 @@ def level_steps(
     ----------
     constant : number of equal steps at the wall; all further steps grow by one ratio.
     edge : sharp edge of the wall, or None; steps grow less where grid lines diverge from this edge.
-    shares : (cells,) weights of the logarithms of the growth ratios.
+    shares : (cells,) weights of the logarithms of growth ratios, in place of `constant` and `edge`.
 
     >>> level_steps(1.0, 9.0, 5, 3, None).tolist()
     [1.0, 1.0, 1.0, 2.0, 4.0]

@@ -45,10 +45,10 @@ OPEN_ATTEMPTS = (
 
 
 def attempts_around_base(ratio: float, *, concave: bool) -> tuple[MarchSettings, ...]:
-    """Return the settings to be tried in turn for C grids around a blunt base; rows grow by `ratio`.
+    """Return the settings for C grids around a blunt base, in the order in which they are tried.
 
-    Lines from both sides of a corner of the base start one first-cell height apart. The faster rows grow, the
-    more the lines must spread. Lines from `concave` corners converge and need more smoothing.
+    `ratio` is the growth ratio away from the wall. The larger it is, the more the lines from corners of the
+    base must spread. Lines from `concave` corners converge and need more smoothing.
     """
     even = max(0.05, 0.5 * (ratio - 1.0) - 0.05)
     first = replace(OPEN_ATTEMPTS[0], even=even)

@@ -142,10 +142,10 @@ def evened_steps(steps: Floats, limit: float) -> Floats:
 def evened_loops(
     layout: Layout, measures: Mapping[int, Measures], limit: float, most: float = MOST
 ) -> Layout:
-    """Return the layout with nodes moved along loops; displacements decay across the adjacent blocks.
+    """Return the layout with nodes moved along loops, so that steps between neighbours grow slowly.
 
-    `measures` has, by loop index, functions whose steps from node to node should grow slowly. Corners are
-    fixed. `limit` and `most` are as in `evened_places`. If cells would fold, `layout` itself is returned.
+    `measures` has functions, such as arc length, of which steps are differences, by loop index. `limit` and
+    `most` are as in `evened_places`. Corners stay. If cells would fold, `layout` is returned unchanged.
     """
     mesh = layout.mesh
     nodes, arcs = mesh.nodes.copy(), mesh.places.arc.copy()

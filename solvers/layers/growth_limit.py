@@ -31,9 +31,9 @@ Numbers = TypeVar("Numbers", Floats, Complexes)
 
 @dataclass(frozen=True, eq=False)
 class GrowthLimit:
-    """The penalty term w Σ max(0, |ρ| - L)² + μ Σ (ρ - ρ0)² for logarithms ρ (..., k) of growth ratios.
+    """The penalty w Σ max(0, |ρ| - L)² + μ Σ (ρ - ρ0)² for logarithms ρ (..., k) of growth ratios.
 
-    `limit` is L, which broadcasts with ρ; `wanted` (..., k) is ρ0; `change` is μ. Methods get w as `weight`.
+    `limit` (a number or array) is L. `wanted` (..., k) is ρ0. `change` is μ. Methods get w as `weight`.
     """
 
     limit: float | Floats

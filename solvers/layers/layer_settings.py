@@ -88,7 +88,7 @@ class LayerSettings:
         return min(GRADING, SPREAD * (self.limit - 1.0)) if self.limit else GRADING
 
     def below(self, growth: float) -> float:
-        """Return the growth ratio for cells outside the layers: `growth`, or less to keep to the limit."""
+        """Return the growth ratio for cells outside the layers: `growth`, or less if it is limited."""
         return min(growth, 1.0 + NOMINAL * (self.limit - 1.0)) if self.limit else growth
 
     def arcs(self, length: Floats, first: float | Floats, last: Floats, cells: int) -> Floats:

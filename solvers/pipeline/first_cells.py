@@ -52,9 +52,9 @@ def sides_called(boundary: Boundary, name: str) -> list[Side]:
 def wall_sides(boundary: Boundary) -> list[Side]:
     """Return the sides of a four-sided boundary that get layers if the request names no walls.
 
-    South or north gets layers if it has a patch that may be a wall (is not named ``inlet``, for example),
-    west or east if all its patches are walls. If no side meets these conditions, all sides with a patch
-    that may be a wall get layers. Raises InputError if no side may be a wall.
+    South and north get layers if any of their patches may be a wall, west and east if all their patches are
+    walls. If no side meets its condition, all sides with a patch that may be a wall get layers. The name or
+    kind of a patch, such as ``inlet``, may exclude a wall. Raises InputError if no side may be a wall.
     """
     patches = {side: [p for p in boundary.patches if p.side == side] for side in SIDES}
     possible = [side for side in SIDES if any(patch.may_be_wall for patch in patches[side])]

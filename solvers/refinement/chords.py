@@ -173,7 +173,7 @@ class Chords:
         return times * np.maximum(-(-least // times), nearest_whole(wanted / times).astype(np.intp))
 
     def counts_for_cells(self, cells: int, least: Indices | None = None) -> Indices:
-        """Return counts (chords,), at least `least`, for about `cells` cells in total."""
+        """Return cell counts (chords,), not below `least`, that give about `cells` cells in total."""
         size = np.sqrt(self.layout.mesh.domain.area / cells)
         best = self.counts_for_size(size, least)
         for _ in range(12):

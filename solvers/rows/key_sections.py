@@ -77,7 +77,7 @@ class LayerColumns:
 
 @dataclass(frozen=True, eq=False)
 class KeySection:
-    """A key section of a row, with its nodes; nodes between key sections are interpolated."""
+    """A section of a row with computed nodes; nodes between such key sections are interpolated."""
 
     plane: SectionPlane  # the section as a plane cascade
     layout: Layout  # its blocks in (m', theta), with the domain of the middle section
@@ -98,12 +98,12 @@ def planned(
     planes: Sequence[SectionPlane], coarse: Layout | None, cells: int, longest: Mapping[int, float],
     wake: tuple[float, float], gaps: tuple[bool, bool],
 ) -> Beginning:  # fmt: skip
-    """Return the plan of all sections, and the middle section with about `cells` cells.
+    """Return the data that all sections share, and the middle section with about `cells` cells.
 
     Parameters
     ----------
     coarse : result of `coarse_section` for the middle section; None: it is computed.
-    longest : by loop index, the greatest length in any section of the straight rows at inlet and outlet.
+    longest : greatest length of the straight rows of cells at inlet and at outlet, by loop index.
     wake : as in `SectionPlan`.
     gaps : whether the blade ends in a gap at the hub, and at the casing.
     """

@@ -68,7 +68,7 @@ class Rise:
 def rises_of(
     row: Row, zones: Sequence[Zone], around: SpanLines, lines: SpanLines, first: float
 ) -> list[Rise]:
-    """Return the displacements of the columns next to each narrow gap."""
+    """Return the displacements of the layers next to each narrow gap between blade and hub or casing."""
     blade = next(zone for zone in zones if not zone.gap)
     narrow = [zone for zone in zones if zone.gap and zone.ends[0] < NARROW * first]
     rises = [Rise.of(row, zone, blade, around, lines) for zone in narrow]

@@ -82,7 +82,7 @@ def turned_by(angle: float) -> Motion:
 
 @dataclass(frozen=True, eq=False)
 class ZoneSection:
-    """The blocks on one level of a zone of the span."""
+    """The blocks on one level of a zone (the blade, or a gap at hub or casing)."""
 
     # plane, layout: those around the blade, as a planar grid and as a layout
     plane: Grid

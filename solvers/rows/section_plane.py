@@ -79,7 +79,7 @@ class SectionPlane:
 
     @property
     def thickest(self) -> float:
-        """Place u, 0 to 0.5, at which the distance from u to 1 - u across the blade is greatest."""
+        """Place u, 0 to 0.5, at which a section is thickest, measured to the place 1 - u opposite."""
         u = np.linspace(0.1, 0.4, 61)
         return float(u[int(modulus(self._opposite(u) - self._opposite(1.0 - u)).argmax())])
 

@@ -53,7 +53,7 @@ def slopes_at_keys(values: Floats) -> Floats:
 
 
 def integrals_at_keys(values: Floats) -> Floats:
-    """Return integrals, from 0 to each of `key_heights`, of polynomials through `values` (k, n, ...)."""
+    """Return integrals (k, n, ...) of polynomials, from 0 to `key_heights`, where they have `values`."""
     return _times(_integrals(len(values)), values)
 
 

@@ -71,7 +71,7 @@ class SpanPlaces:
         return np.asarray(np.mod(start + height * wrapped(end - start), 1.0))
 
     def evened(self, planes: Sequence[SectionPlane], growth: float, pairs: Indices) -> "SpanPlaces":
-        """Return places moved until steps grow by about `growth` at most; `pairs`: see `SpanPlaces.of`."""
+        """Return the positions of nodes, moved so that neighbouring steps have ratios up to `growth`."""
         lines, corners = ChannelLines.of(planes), planes[0].corners
 
         def even(k: int) -> Floats:
@@ -83,7 +83,7 @@ class SpanPlaces:
 
 
 def at_corners(places: Floats, corners: Floats) -> Floats:
-    """Return `places` (k,) around a blade; the place nearest to each of the `corners` (c,) moves to it."""
+    """Return positions `places` (k,) around a blade; the one nearest to each corner (c,) moves there."""
     out = places.copy()
     out[corner_nodes(places, corners)] = corners
     return out

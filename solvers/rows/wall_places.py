@@ -26,8 +26,8 @@ def even_wall_places(
     ----------
     corners : (c,) places of nodes that stay.
     pairs : (p, 2) a node of the upper and a node of the lower side, joined by a line across the channel.
-    lines : mean lines across the channel; lines of pairs should not lean from these more than before.
-    opposite : whether the node opposite to each node at u stays at 1 - u; `lines` then have no effect.
+    lines : mean lines across the channel, from which the lines of pairs should not lean further.
+    opposite : whether nodes at u and 1 - u stay opposite each other; `lines` then have no effect.
     """
     limit = MARGIN * math.log(growth)
     lead = int(np.abs(wrapped(places)).argmin())

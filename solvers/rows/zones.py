@@ -48,7 +48,7 @@ def _sections(zones: Sequence[Zone]) -> float:
 
 
 def zones_of(row: Row, first: float, growth: float, cells: int) -> list[Zone]:
-    """Return the zones (blade and gaps) of a row with about `cells` cells, from hub to casing.
+    """Return the zones (blade and gaps) of a row with about `cells` cells in total, from hub to casing.
 
     First cells in a gap are `first` high, or smaller so that `GAP_ROWS` cells fit into the gap.
     """

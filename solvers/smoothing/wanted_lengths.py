@@ -20,9 +20,8 @@ _SHARE = 0.17
 def wanted_lengths(mesh: QuadMesh, most: float, *, slide: bool) -> Floats:
     """Return target lengths (e,) of `mesh.edges`; the ratio of neighbours is at most about `most`.
 
-    If a ratio exceeds `most`, its logarithm is diffused along and across grid lines. Edges across thin first
-    cells keep their lengths, and so do edges along a boundary whose nodes do not `slide`. Only ratios of
-    neighbouring lengths matter.
+    Edges across thin cells at the boundary keep their lengths. So do edges along the boundary, unless
+    boundary nodes `slide`. Only ratios of the lengths matter.
     """
     own = log(mesh.edge_lengths)
     cap, stays = math.log(most), thin_heights(mesh)
@@ -44,7 +43,7 @@ def wanted_lengths(mesh: QuadMesh, most: float, *, slide: bool) -> Floats:
 
 
 def thin_heights(mesh: QuadMesh) -> Bools:
-    """Return a mask (e,) of edges from the boundary that are the short side of a thin cell (see `THIN`)."""
+    """Return a mask (e,) of the edges from the boundary across thin cells (aspect ratio above `THIN`)."""
     cell, side = np.nonzero(mesh.on_wall[mesh.edge_of])
     ratio = mesh.aspects(mesh.edge_lengths)[cell]
     thin = np.where(side % 2 == 0, ratio < 1.0 / THIN, ratio > THIN)

@@ -32,7 +32,7 @@ _NOSE, _EDGE = 0.35, 0.3  # and at least so many thicknesses of the section ther
 
 @dataclass(frozen=True)
 class Cap:
-    """Settings of the cap of a tip."""
+    """Settings of the cap that closes the tip of a wing."""
 
     short: int = 4  # cells on each side of trailing edge and nose that face a short side of the core
     rows: int = ROWS  # number of rows of the ring; they grow by one ratio

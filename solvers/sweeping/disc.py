@@ -57,7 +57,7 @@ class Disc:
         return CrossSection([product(arc, np.array(turn).T) for turn in _TURNS], self.first_cell)
 
     def plan(self, side: int) -> FiveBlocks:
-        """Return the division with `side` cells on each quarter."""
+        """Return the division into five blocks with `side` cells on each quarter of the circle."""
         return planned([self.section(side)], self.growth or GROWTH, radial=True)
 
     def count(self, side: int) -> int:
@@ -66,7 +66,7 @@ class Disc:
 
     @cached_property
     def side(self) -> int:
-        """Number of cells on each quarter."""
+        """Number of cells on each quarter of the circle."""
         if self.around is not None:
             return self.around // 4
         if (wanted := self.cells) is None:

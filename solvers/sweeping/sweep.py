@@ -182,10 +182,10 @@ def walled(section: Grid) -> Grid:
 
 
 def self_crossing(path: Path, reach: float) -> tuple[float, float, float] | None:
-    """Return a point where a section of extent `reach` meets itself along a path, or None.
+    """Return a point where a section of extent `reach`, moved along a path, meets itself, or None.
 
-    There, two points of the path are closer than twice `reach`, but their distance along the path is more
-    than half a circle of the radius `reach`.
+    It meets itself where two points of the path are closer than twice `reach`, but farther apart along the
+    path than half a circle of the radius `reach`.
     """
     count = int(min(1500, max(64, 4 * path.length / max(reach, 1e-300))))
     s = np.linspace(0.0, path.length, count)

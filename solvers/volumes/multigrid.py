@@ -155,7 +155,7 @@ class VolumeMultigrid:
 
 
 def transfer(n: int, m: int) -> Transfer:
-    """Return the transfer between a level of n and a level of m < n equally spaced nodes."""
+    """Return the multigrid transfer between a level of n and a level of m < n equally spaced nodes."""
     at = np.arange(n) * ((m - 1) / (n - 1))
     first = np.minimum(at.astype(np.intp), m - 2)
     weights = np.stack([1.0 - (at - first), at - first], axis=1)

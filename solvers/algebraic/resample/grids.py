@@ -45,10 +45,7 @@ def refine_grid(coarse: Floats, boundary: Boundary) -> Floats:
 
 
 def divided(coarse: Floats, boundary: Boundary) -> Floats:
-    """Return nodes (ni, nj, 2) inside `boundary`, interpolated linearly from a `coarse` quad grid (m, n, 2).
-
-    Cells fold only in folded coarse cells, or next to edges that are curved between coarse nodes.
-    """
+    """Return nodes (ni, nj, 2) inside `boundary`, interpolated linearly from a `coarse` grid (m, n, 2)."""
     nodes = planar_nodes(boundary.ni, boundary.nj)
     along, across = (
         corner_damping.linear(len(coarse), boundary.ni),

@@ -20,8 +20,8 @@ from meshonet.solvers.layers.layer_settings import LayerSettings
 def finished(layout: Layout, settings: LayerSettings, held: Bools, following: Indices = NO_PAIRS) -> Layout:
     """Return the layout with folded cells unfolded, and with limited growth of its cells.
 
-    Nodes in the mask `held` (n,) are fixed. Each pair in `following` (k, 2) is a wall node and a node that
-    moves with it. Raises NoValidGridError, with the position, if cells stay folded.
+    Nodes in the mask `held` (n,) are fixed. `following` (k, 2) has pairs: a wall node, and a node that moves
+    with it. Raises NoValidGridError, with the position, if cells stay folded.
     """
     inner = held.copy()
     for number in layout.layers:

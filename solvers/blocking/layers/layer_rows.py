@@ -46,9 +46,9 @@ def ring_rows(
     mesh: QuadMesh, loop: int, ring: Ring, rows: int, settings: LayerSettings, inner: Floats,
     factors: Callable[[Floats], Floats] | None = None,
 ) -> Rows:  # fmt: skip
-    """Return the layers between the wall of a ring and the nodes of `mesh` on its front (their outer edge).
+    """Return the layers of a ring, between its wall and the nodes of `mesh` on its outer edge.
 
-    `inner` (k,) are the heights of the cells beyond the front. First-cell heights of the settings are
+    `inner` (k,) are the heights of the cells outside the ring. First-cell heights of the settings are
     multiplied by `factors`, a function of arc lengths (k,) of the wall.
     """
     order = mesh.places.along(loop)

@@ -31,16 +31,15 @@ _SAMPLES = 2000  # points of a wall from which distances are measured
 
 @dataclass(frozen=True, eq=False)
 class Ring:
-    """Layers around a boundary loop.
+    """Layers around a boundary loop, made of columns (lines of nodes from the wall outwards).
 
     Parameters
     ----------
     wall : the loop.
-    arcs : (n,) ascending arc lengths on the wall at which the columns start. If the wall has corners, the
-        first column starts at a corner.
+    arcs : (n,) ascending arc lengths on the wall at which columns start, the first at a corner if there is
+        one.
     levels : (n, m, 2) nodes of each column, from the wall to the front (the outer edge of the layers).
-    front : loop along the last level. It has one point per column, and a corner with two cells where the wall
-        has a corner.
+    front : the front as a loop with a point for each column. It has a corner where the wall has one.
     """
 
     wall: Loop
@@ -79,7 +78,7 @@ class Ring:
 
     @cached_property
     def along(self) -> Measures:
-        """Arc lengths of corresponding points on the outer edge, the wall, and the level next to the wall."""
+        """Lengths along the wall and the level above it, as functions of the length along the outer edge."""
         n = len(self.arcs)
         index = np.arange(FINER * n + 1) / FINER
         knots = np.append(self.front.curve.knots, self.front.length)

@@ -66,10 +66,11 @@ class WallLayers:
         cls, domain: Domain, loops: Sequence[int], settings: LayerSettings,
         stretches: Sequence[Stretch] = (), sheets: Sequence[int] = (),
     ) -> Self:  # fmt: skip
-        """Return the layers of a domain: rings around `loops`, rows of blocks at `stretches` and `sheets`.
+        """Return the layers of a domain.
 
-        `loops` and `sheets` are indices of loops, `stretches` parts of loops. Sheets have one sharp edge and
-        a wake with layers. Raises InputError if there is too little room, or if layers fold.
+        Layers around `loops` (indices) are marched. At `stretches` (parts of loops) and around `sheets` they
+        are rows of blocks. `sheets` are indices of loops with one sharp edge and a wake with layers. Raises
+        InputError if there is too little room, or if layers fold.
         """
         rings = rings_around(domain, loops, settings)
         numbers = sorted({*sheets, *(stretch.loop for stretch in stretches)})
@@ -142,8 +143,8 @@ class WallLayers:
     ) -> SizeMetric:
         """Return the target cell sizes outside the layers, at most `size` if given.
 
-        Next to layers, sizes are `scale` times the cell lengths along the wall. `wakes` are lines (k, 2), by
-        the index of the loop at which they begin.
+        Without `size`, sizes next to layers are `scale` times the cell lengths along the wall. `wakes` has
+        the line (k, 2) of a wake by the index of the loop at which it begins.
         """
         scale = 1.0 if size else scale
         parts = [sizes.metric(scale, self.settings) for sizes in self.sizes.values()]
@@ -184,7 +185,7 @@ class WallLayers:
 
 
 def rings_around(domain: Domain, loops: Sequence[int], settings: LayerSettings) -> dict[int, Ring]:
-    """Return the rings of layers around `loops` of a domain, by the index of the loop.
+    """Return the layers around each of the `loops` of a domain, by the index of the loop.
 
     Raises InputError if there is too little room for layers, or if layers fold at a wall.
     """

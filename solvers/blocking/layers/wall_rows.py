@@ -54,7 +54,7 @@ class WallRows:
         return row
 
     def columns(self, layout: Layout, row: int) -> list[Indices]:
-        """Return, for each block of a row, the nodes (k, n) of k lines from wall or wake to outer edge."""
+        """Return for each block of a row the nodes (k, n) of lines from wall or wake to the outer edge."""
         tables = []
         for block, direction in zip(*np.nonzero(self.across == row), strict=True):
             table = layout.blocks[block].T if direction else layout.blocks[block]

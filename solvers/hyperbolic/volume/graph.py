@@ -38,7 +38,7 @@ class Seen:
         )
 
     def opposite(self, splay: float) -> "Seen":
-        """Return the ghost node opposite to the neighbour, 1 + `splay` times as far away from the node."""
+        """Return the ghost beyond the node, 1 + `splay` times as far away from it as this neighbour."""
         far = 1.0 + splay
         return Seen(self.base, 1.0 + far, -far * self.sign, -far * self.shift)
 

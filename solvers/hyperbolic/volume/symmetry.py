@@ -100,7 +100,7 @@ def _named(nodes: Floats, sides: Indices, axis: int, slack: float) -> tuple[Plan
 
 
 def in_planes(surface: Surface, planes: tuple[Plane, ...], inside: Indices) -> Floats:
-    """Return the nodes (n, 3) of a surface, with the edges `inside[p]` moved exactly into ``planes[p]``."""
+    """Return nodes (n, 3) with the open edges in the mask `inside[p]` moved exactly into ``planes[p]``."""
     nodes, edges = surface.nodes.copy(), surface.open_edges
     for plane, flags in zip(planes, inside, strict=True):
         nodes[edges[flags], plane.axis] = plane.value

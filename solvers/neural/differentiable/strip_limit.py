@@ -35,7 +35,7 @@ class Settled(torch.autograd.Function):
 
     @staticmethod
     def forward(ctx: Any, start: Tensor) -> Tensor:
-        """Return the limit of Picard steps. Raises MemberError if a member does not converge."""
+        """Return the limit of Picard's iteration. Raises MemberError if it does not converge."""
         (levels,) = in_parts(_limit, _together(start), start.mT.contiguous())
         ctx.save_for_backward(start, levels)
         return levels.mT

@@ -51,7 +51,7 @@ class Architecture:
         return {"sensors": np.array([sensors(boundary, self.sensors) for boundary in boundaries])}
 
     def check(self, w: Weights, inputs: Weights) -> None:
-        """Raise InputError if the model does not apply to `inputs`; by default it applies to all."""
+        """Raise InputError if the model does not apply to `inputs`; by default it always applies."""
 
     def penalty(self, xp: Any, w: Weights, inputs: Weights) -> Any:
         """Return a further term of the loss, a scalar; None, the default, if there is none."""

@@ -75,10 +75,10 @@ class DeepONet(Architecture):
 
 @dataclass(frozen=True)
 class MIONet(DeepONet):
-    """One trunk and two branches, for x and for y of boundary points, whose features are multiplied.
+    """A network of xi and eta (the trunk), and one for x and one for y of boundary points (the branches).
 
-    ``x = (branch_x(s_x) * branch_y(s_y))[:k] . trunk(xi, eta) + b``; y has features ``[k:]``. Jin, Meng
-    & Lu, SIAM Journal on Scientific Computing 44 (2022) A3490.
+    ``x = (branch_x(s_x) * branch_y(s_y))[:k] . trunk(xi, eta) + b`` with boundary points s and a bias b; y
+    has features ``[k:]``. Jin, Meng & Lu, SIAM Journal on Scientific Computing 44 (2022) A3490.
     """
 
     def shapes(self, frame: Frame) -> Shapes:

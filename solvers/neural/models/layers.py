@@ -23,9 +23,9 @@ def dense_shapes(name: str, sizes: Sequence[int], stacked: int | None = None) ->
 
 
 def dense(xp: Any, w: Weights, name: str, h: Any, *, last: bool = False) -> Any:
-    """Return the output of the dense layers called `name` for `h` (.., in).
+    """Return the output of the dense layers called `name` for inputs `h` (.., in).
 
-    tanh follows each layer but the last; if `last` is true, it follows each layer.
+    tanh follows each layer except the last; with `last` it follows the last layer too.
     """
     k = 0
     while f"{name}/{k}/weight" in w:

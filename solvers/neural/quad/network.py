@@ -173,9 +173,9 @@ class Network:
         return np.asarray(moved.view(np.complex128)[..., 0])
 
     def moves(self, near: Complexes, step: Complexes, head: int) -> Complexes:
-        """Return the displacements (batch, m, n) in the output number `head` for grids `near`.
+        """Return displacements (batch, m, n) of grids `near`, from the network's output with index `head`.
 
-        `step` is the last Picard step towards `near`.
+        `step` is the last Picard step, which led to `near`.
         """
         if self.around:
             return self(features(near, step, np, around=True), head)

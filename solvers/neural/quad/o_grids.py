@@ -26,8 +26,8 @@ def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) ->
     """Return the nodes (batch, 2, 65, 33) of the network's grids for O `boundaries` with equal node counts.
 
     `head` is the index in `encoding.HEADS` of the method that the output of the network imitates. Raises
-    InputError if the wall or far field, reduced to 65 nodes, winds once neither around the body's centroid
-    nor around the point of `inside_point.inside`.
+    InputError if wall or far field do not wind once around the body's centroid or around another point
+    inside.
     """
     walls, strips, centres, once = _strips(boundaries)
     if not once.all():

@@ -78,9 +78,9 @@ def _solved(boundary: Boundary) -> tuple[Complexes, Complexes, Complexes] | None
 class StripTargets:
     """Training data: inputs, as `encode` returns them, and wanted outputs (n, 2 Q, COLUMNS).
 
-    The wanted outputs represent R, Winslow's solution minus the harmonic extension of the walls. An output
-    times `scale` is a coefficient of R / size^2 in `basis` (Q, LEVELS - 2), the proper orthogonal
-    decomposition across the strip in the H1 inner product. The mean square norm of outputs is 1.
+    The wanted outputs represent R, Winslow's solution minus the harmonic extension of the walls. They are
+    coefficients of R / (scale size^2) in `basis` (Q, LEVELS - 2), the proper orthogonal decomposition across
+    the strip in the H1 inner product. Their mean square norm is 1.
     """
 
     channels: Floats

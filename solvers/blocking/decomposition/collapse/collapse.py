@@ -105,7 +105,7 @@ def irregular_inside(mesh: QuadMesh) -> int:
 
 
 def widths(current: BaseComplex) -> Floats:
-    """Return the widths (chords,) of chords (rows of blocks): the mean length of the block sides across."""
+    """Return widths (chords,) of chords (rows of blocks): the mean lengths of the sides between blocks."""
     chord = current.sides[2]
     edges = np.bincount(chord, minlength=current.chords)
     return np.bincount(chord, current.side_lengths().ravel(), current.chords) / edges
@@ -114,10 +114,10 @@ def widths(current: BaseComplex) -> Floats:
 def contract(mesh: QuadMesh, rungs: Bools) -> QuadMesh | None:
     """Return the mesh with both ends of each edge in the mask `rungs` (e,) merged; None if that is invalid.
 
-    A corner of the domain keeps its place, and nodes that are merged with it move there. Otherwise, merged
-    nodes move to the mean arc length of the wall nodes among them, or to their mean position if there are
-    none. Two corners cannot be merged, nor two wall nodes without a wall edge in `rungs` between them. The
-    result is invalid if more wall nodes than before have a wrong number of quads, or if it does not conform.
+    Merged nodes move to the corner of the domain among them, or else to the mean arc length of wall nodes
+    among them, or else to their mean position. Two corners cannot be merged, nor two wall nodes without a
+    wall edge in `rungs` between them. The result is invalid if more wall nodes than before have a wrong
+    number of quads, or if it does not conform.
     """
     label, count = joined_classes(np.ascontiguousarray(mesh.edges[rungs]), len(mesh.nodes))
     kept = ~rungs[mesh.edge_of].any(axis=1)

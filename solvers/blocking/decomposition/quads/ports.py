@@ -14,7 +14,7 @@ SLACK = 0.5  # angle in radians by which a ray may lie outside of the triangle t
 
 @dataclass(frozen=True, eq=False)
 class Ports:
-    """Vertices at which lines of a motorcycle graph start, and the directions (ports) of these lines."""
+    """Vertices at which lines between blocks start, and the directions (ports) of these lines."""
 
     vertex: Indices  # (n,) vertex of the triangulation at each node
     quarters: Indices  # (n,) number of right angles around each node, which is the number of cells

@@ -40,7 +40,7 @@ class TMesh:
 
 
 def t_mesh(graph: MotorcycleGraph) -> TMesh:
-    """Return the arcs and faces of a motorcycle graph. Raises SolverError if a face is not a rectangle."""
+    """Return arcs and faces of a graph of lines. Raises SolverError if a face is not a rectangle."""
     nodes, trail, span, ways = _arcs(graph)
     follow = _successors(graph, ways)
     faces = []

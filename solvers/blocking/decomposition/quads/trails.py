@@ -40,7 +40,7 @@ class Trails:
         return float(self.length[self.first[trail + 1] + trail])
 
     def at_vertex(self, vertex: int) -> tuple[int, float]:
-        """Return the index of the trail along the wall through a vertex, and its length up to the vertex."""
+        """Return the index of the trail (line in the map) through a wall vertex, and its length up to it."""
         return self._on_piece(self.vertex == vertex, 0.0)
 
     def at_edge(self, face: int, edge: int, part: float) -> tuple[int, float]:
@@ -100,7 +100,7 @@ def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, rays: int)
 
 
 def wall_trails(seamless: SeamlessMap) -> Trails:
-    """Return a closed trail (line in the map) along each wall, outer loop first, the domain on its left."""
+    """Return trails (lines in the map) along the walls, outer loop first, with the domain on the left."""
     triangulation = seamless.surface
     faces, edges = triangulation.walls
     start = triangulation.triangles[faces, edges]

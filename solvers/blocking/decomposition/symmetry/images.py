@@ -51,8 +51,8 @@ def agree(images: Images) -> bool:
 def made_symmetric(mesh: QuadMesh, images: Images | None = None) -> QuadMesh:
     """Return the mesh with each node at the mean of itself and its mirror images.
 
-    By default, `images` has images in all mirrors. Only the first mirror is used if images do not `agree`,
-    as in a ring of an odd number of quads. Corners do not move.
+    `images` are its images in mirrors, by default in all. If they are inconsistent (see `agree`), as in a
+    ring of an odd number of quads, only the first mirror is used. Corners do not move.
     """
     images = images_of(mesh) if images is None else images
     if not agree(images):
