@@ -49,7 +49,7 @@ def painted(
     sheet: CellSheet, mask: Bools, steps: tuple[int, int], axes: Floats, colouring: Colouring | None,
     limits: tuple[float, float],
 ) -> Painted:  # fmt: skip
-    """Return the cells of a sheet in `mask` (n-1, m-1), merged by `steps` and projected onto `axes`."""
+    """Return the cells in `mask` (n-1, m-1), merged by `steps` in each direction, projected onto `axes`."""
     import matplotlib as mpl
 
     marks = [

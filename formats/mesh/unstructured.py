@@ -51,7 +51,7 @@ def unstructured(grid: Grid) -> Unstructured:
 
 
 def points_of(grid: Grid, numbers: Sequence[Indices]) -> Floats:
-    """Return the nodes (n, d) of a grid in the order of the node numbers `numbers`, each once."""
+    """Return the nodes (n, d) of a grid in the order of their `numbers`, which connected nodes share."""
     count = 1 + max(int(number.max()) for number in numbers)
     points = np.empty((count, grid.blocks[0].nodes.shape[-1]))
     for number, block in zip(numbers, grid.blocks, strict=True):

@@ -143,7 +143,7 @@ def _next_kind(kinds: list[Kind], k: int, step: int) -> Kind:
 
 
 def left_out(lines: list[Line]) -> tuple[str, ...]:
-    """Return notes on ignored lines: HTML, and, next to rows of numbers, lines without two numbers."""
+    """Return notes on ignored lines: HTML, and lines without two numbers next to rows of numbers."""
     kinds: list[Kind] = ["blank", *map(attrgetter("kind"), lines), "blank"]
     notes, first, last = [], 0, 0
     if "row" in kinds:

@@ -37,7 +37,7 @@ class BodyCuts:
 
     @property
     def meridian(self) -> Floats | None:
-        """X and radius (n + 2, 2) from nose to tail; None unless the body is one of revolution about x."""
+        """Points (n + 2, 2) of x and radius from nose to tail; None unless the body is one of revolution."""
         y, size = self.nose[1], _ROUND * (self.tail[0] - self.nose[0])
         radii = [np.hypot(cut[:, 0] - y, cut[:, 1]) for cut in self.points]
         if abs(self.tail[1] - y) > size or max(float(np.ptp(each)) for each in radii) > size:

@@ -25,8 +25,8 @@ _ACROSS: tuple[Side, Side] = ("west", "east")
 def resample_edge(nodes: Floats, m: int, *, closed: bool) -> Floats:
     """Return `m` >= 2 nodes (m, 2) on the curve through `nodes` (n, 2), distributed like `nodes`.
 
-    The arc length as a function of index / number of cells stays the same. Corners of the curve remain nodes
-    if `m` is large enough; the end nodes are kept bitwise. A `closed` edge repeats its first node at the end,
+    The arc length at each fraction of the index range stays the same. Corners of the curve remain nodes if
+    `m` is large enough; the end nodes are kept bitwise. A `closed` edge repeats its first node at the end,
     both in `nodes` and in the result.
 
     Raises InputError: the errors of `Curve`.

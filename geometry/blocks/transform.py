@@ -247,7 +247,7 @@ def turned(grid: Grid) -> Grid:
 
 
 def turned_boundary(boundary: Boundary) -> Boundary:
-    """Return a four-sided boundary with xi and eta exchanged, as `turned`."""
+    """Return a four-sided boundary with xi and eta exchanged, as `turned` does for grids."""
     patches = tuple(turned_patch(patch, boundary.ni - 1) for patch in boundary.patches)
     west, east = boundary.south[::-1], boundary.north[::-1]
     return replace(
@@ -257,7 +257,7 @@ def turned_boundary(boundary: Boundary) -> Boundary:
 
 
 def turned_patch(patch: Patch, last: int) -> Patch:
-    """Return the patch of a grid after `turned`; `last` is the last index along xi of the patch's block."""
+    """Return a patch with xi and eta exchanged, as in `turned`; `last` is its block's last index along xi."""
     side, (start, stop) = _turned_stretch(patch.side, (patch.start, patch.stop), last)
     return replace(patch, side=side, start=start, stop=stop)
 

@@ -100,7 +100,7 @@ def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, 
 
 
 def follow(wall: Complexes, centre: complex, quarter: complex) -> Complexes:
-    """Return zeta (n,), continuous along a `wall` (n,), where wall = centre + quarter (zeta + 1/zeta)."""
+    """Return zeta (n,), continuous along `wall` (n,), that solves wall = centre + quarter (zeta + 1/zeta)."""
     return _native.lift_follow(np.ascontiguousarray(wall, complex), centre, quarter)
 
 

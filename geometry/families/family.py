@@ -21,7 +21,7 @@ Corners = list[tuple[float, float]]
 
 @dataclass(frozen=True)
 class Family:
-    """A family of shapes with one parameter; by default, its values are drawn from `low` to `high`."""
+    """A family of shapes with one parameter, whose values are drawn from `low` to `high` by default."""
 
     name: str
     parameter: str  # meaning of the parameter, with its unit
@@ -83,8 +83,7 @@ def arch(height: float, ni: int, nj: int) -> Boundary:
 def hexagon(angle: float, ni: int, nj: int) -> Boundary:
     """Case 2: return a square with a kink of `angle` degrees in its top and in its bottom.
 
-    The kinks are at (1/2, 1 + h) and (1/2, -h). `angle` is measured inside the domain. It determines h, which
-    is 1/2 for 90 degrees.
+    The kinks are at (1/2, 1 + h) and (1/2, -h) with h = 1/(2 tan(angle/2)); angles are measured inside.
     """
     h = 0.5 / math.tan(math.radians(0.5 * angle))
     south = polyline([(0.0, 0.0), (0.5, -h), (1.0, 0.0)], ni)
@@ -96,8 +95,8 @@ def wrench(opening: float, ni: int, nj: int) -> Boundary:
     """Case 3: return a unit square with a notch of width `opening` in its top, like the jaw of a wrench.
 
     The notch is centred at x = 1/2 and reaches from y = 1 down to 0.6. The tips on both sides of the notch
-    are at y = 1.15, at a distance of 0.05 in x. Elliptic grids fold at the lower corners of the notch.
-    Corners have the node indices of an opening of 0.3, so that nodes depend smoothly on `opening`.
+    are at y = 1.15, at a distance of 0.05 in x. Elliptic grids fold at the lower corners of the notch. The
+    indices of nodes at corners do not depend on `opening`.
     """
     south, north = polyline([(0.0, 0.0), (1.0, 0.0)], ni), polyline(_jaw(opening), ni, like=_jaw(0.3))
     return _upright(south, north, nj, f"wrench-{opening:.6g}")

@@ -34,7 +34,7 @@ class Places:
         return cls(none, np.zeros(count), np.zeros(count, dtype=np.intp), none.copy())
 
     def and_then(self, *others: Places) -> Places:
-        """Return the places of these nodes, followed by the places `others`."""
+        """Return these positions and the positions `others`, joined in this order."""
         every = (self, *others)
         return Places(*(np.concatenate([getattr(each, name) for each in every]) for name in vars(self)))
 
@@ -151,7 +151,7 @@ class QuadMesh:
         return np.asarray(known[off.argmin(axis=1)])
 
     def beside_partners(self, nodes: Floats) -> Floats:
-        """Return `nodes` (n, 2); a node with a periodic partner is put at the partner plus the shift."""
+        """Return `nodes` (n, 2), with nodes on one periodic side moved to their partners plus the shift."""
         images = np.flatnonzero(self.places.partner >= 0)
         if images.size and self.domain.periodic:
             nodes = nodes.copy()

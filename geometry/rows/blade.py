@@ -172,7 +172,7 @@ class BladeSurface:
         return out
 
     def section(self, h: float, u: Floats) -> Floats:
-        """Return s and theta (m, 2) (see `Channel`) at places `u` (m,) around the blade, at height `h`."""
+        """Return s (`Channel`) and theta (m, 2) at height `h` and places `u` (m,) around the blade."""
         return self.crossings(self.lines(u), np.full(len(u), h))
 
     @property
@@ -184,7 +184,7 @@ class BladeSurface:
 
     @property
     def corners(self) -> Floats:
-        """Ascending places u (c,) of those corners that all profiles have."""
+        """Places u (c,), from 0 to 1 around the blade, of the corners that all profiles share; ascending."""
         return np.sort(np.mod(_common_corners(self.profiles), 1.0))
 
 

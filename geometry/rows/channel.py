@@ -42,7 +42,7 @@ class MeridionalMap:
 
     @property
     def length(self) -> float:
-        """Coordinate m' of the outlet (m' of the inlet is 0)."""
+        """Length of the channel in the coordinate m', which is 0 at the inlet."""
         return float(self.forward.values[-1])
 
 
@@ -198,7 +198,7 @@ class Channel:
 
     @cached_property
     def levels(self) -> tuple[float, ...]:
-        """Ascending heights h of hub and casing, and of the ends of the blade at gaps."""
+        """Heights, 0 at the hub to 1 at the casing, of both walls and of blade ends at gaps; ascending."""
         return tuple(self._levels)
 
 

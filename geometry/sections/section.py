@@ -78,7 +78,7 @@ class Section:
     def frame(self) -> tuple[Floats, float]:
         """Leading edge (2,) and chord of the given shape, before it is moved to (0, 0) and scaled to 1.
 
-        For an airfoil that nearly has this position and size, as in most files, they are (0, 0) and 1.
+        An airfoil of chord 1 near (0, 0), as in most files, is not moved: the values are (0, 0) and 1.
         """
         if isinstance(self.shape, Airfoil):
             nose, length = self.shape.leading_edge, self.shape.unit

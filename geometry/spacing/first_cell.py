@@ -47,7 +47,7 @@ class FirstCell:
         return tuple(setting) if isinstance(setting, Mapping) else ()
 
     def check_first_cell(self) -> None:
-        """Raise InputError for a height out of range, or for fields that need or exclude each other."""
+        """Raise InputError for a height out of range, or for fields that cannot be combined."""
         if self.first_cell is not None and self.y_plus is not None:
             problem = "{first_cell} and {y_plus} both say how high the first cell is"
             raise InputError(problem, "give one of them")

@@ -21,9 +21,9 @@ class Hollows:
     Parameters
     ----------
     edges : (k, 2) the two nodes of each edge.
-    angles : (k,) angle of the space between the two faces, in degrees, at most 150.
-    distance : (n,) distance of each node from a concave edge, along edges of cells, plus the width of the
-        cells at this edge; infinite without concave edges.
+    angles : (k,) outer angle between the two faces at each edge, in degrees, at most 150.
+    distance : (n,) length of the path along cells from each node to a concave edge, plus the width of the
+        cells at this edge; infinite if there are no concave edges.
     """
 
     edges: Indices

@@ -41,11 +41,12 @@ class PoleCore:
 
 
 def core_of(fan: Floats, quarters: int, most: int, *, even: bool = False) -> PoleCore:
-    """Return the core that replaces the first columns of a `fan` (m + 1, n, 3), a patch with a pole at j = 0.
+    """Return the core that replaces the first columns of a `fan`, a patch (m + 1, n, 3) with a pole at j = 0.
 
-    The core and the rows around it are rounded, as marching requires. An `even` core has no kinks. Across the
-    kinks of other cores, cell sizes differ by a factor of up to 2. `quarters` is the fan's angle in right
-    angles. A closed fan ends with its first curve, and m is even. At most `most` columns are replaced.
+    The core and the rows around it are rounded, as marching requires. An `even` core has no kinks, at which
+    cell sizes would change by up to a factor of 2. `quarters` is the angle of the fan around the pole, in
+    right angles. If it is 4, the last line of the fan repeats the first, and m is even. At most `most`
+    columns are replaced.
     """
     m = len(fan) - 1
     steps = norms(np.diff(fan, axis=1)).mean(axis=0)

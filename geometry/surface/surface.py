@@ -77,12 +77,12 @@ class Surface:
 def surface_of(grid: Grid, *, poles: Literal["replace", "refuse"] = "replace") -> Surface:
     """Return the surface that the patches (ni, nj, 3) of a grid form together.
 
-    Poles (sides that are single points) become cores unless `poles` is ``refuse``. Open trailing edges are
-    closed. Patches with the opposite orientation are reversed along i. Notes say so. A surface that is
-    closed, or that planes normal to one axis close, faces outwards. Any other surface keeps the orientation
-    of most of its area. Raises InputError, with the place: a block that is not a patch; an edge of zero
-    length or of three quads; sheets that touch in a node; sides that nearly match, or meet with different
-    nodes; a trailing edge whose ends differ; no orientation.
+    Poles (sides that are single points) are replaced by core patches unless `poles` is ``refuse``. Open
+    trailing edges are closed. Patches with the opposite orientation are reversed along i. Notes report these
+    changes. Normals point outwards if the surface is closed, also if only planes normal to one axis close it.
+    Otherwise most of the area keeps its orientation. Raises InputError, with the place: a block that is not a
+    patch; an edge of zero length or of three quads; sheets that touch only at a node; sides that nearly
+    match, or meet with different nodes; a trailing edge whose ends differ; no orientation.
     """
     if any(block.nodes.ndim != 3 or block.nodes.shape[-1] != 3 for block in grid.blocks):
         problem = "a surface is made of patches (ni, nj, 3), and a block of this grid is none"

@@ -107,9 +107,9 @@ def second_layer(values: AnyArray, side: Side) -> AnyArray:
 def exchange(
     connections: Sequence[Connection], outside: FaceValues, inside: FaceValues
 ) -> None:  # fmt: skip
-    """Copy values from just inside each of two connected sides to the layer just outside the other side.
+    """For each pair of connected sides, copy values just inside one side to the layer outside the other side.
 
-    `inside` and `outside` are functions of block and side that return views of these layers.
+    `inside` and `outside` are functions of block and side that return views of these two layers.
     """
     for each in connections:
         own_out, donor_out = each.nodes(lambda block, side: outside(block, side)[..., None])

@@ -137,7 +137,7 @@ def lines_table(grid: Grid, blocks: BlockFigures) -> str:
 
 
 def folded_words(quality: Quality) -> str:
-    """Return the number of folded cells as text; volumes by corners and by Bezier coefficients."""
+    """Return the number of folded cells as text; in volumes, both by corners and by Bezier coefficients."""
     words = f"{quality.folded} folded" if quality.folded else "none folded"
     if quality.bezier_folded is None:
         return words

@@ -44,7 +44,7 @@ class StageLine:
     def text(self) -> str:
         """Return the text of the line: elapsed time, stage and progress.
 
-        In the first second, the text is only the attribute `detail`, which later replaces unknown progress.
+        In the first second, the text is only `detail`; later, `detail` stands in place of unknown progress.
         """
         stage, now = self._stage, time.perf_counter()
         spent = now - self._begun

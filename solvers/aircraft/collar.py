@@ -38,7 +38,7 @@ Within: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 
 @dataclass(frozen=True)
 class Rectangle:
-    """The rectangle around the section of a wing: limits of s and theta (`BodyMap`), as physical lengths."""
+    """Rectangle around the section of a wing: its limits along and around the body, as lengths in space."""
 
     front: float
     back: float

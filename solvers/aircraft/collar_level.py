@@ -50,12 +50,12 @@ class Hole:
 
     @property
     def plane(self) -> Floats:
-        """(n, 2) coordinates s and theta of the section's nodes, scaled to physical lengths."""
+        """Coordinates s and theta (n, 2) of the section's nodes, scaled to lengths in space."""
         return self.section * self.scale
 
     @property
     def bands(self) -> tuple[float, float]:
-        """Physical distances from the collar down to the keel or a wing, and up to the crown or a wing."""
+        """Lengths in space of the bands of cells below and above the collar (cells around the section)."""
         bottom, top = (theta * float(self.scale[1]) for theta in (self.below, self.within[1][1]))
         if self.fin:
             top = self.box.high + self.box.low - bottom

@@ -55,7 +55,7 @@ class ColumnPlan:
 
     @property
     def bands(self) -> int:
-        """Total number of cells below and above the collars (cells around wings), along theta."""
+        """Number of cells from keel to crown, without the collars (the cells around wings and fins)."""
         return self.collars[0].low + (0 if self.fin_alone else self.collars[0].top)
 
     @property

@@ -20,10 +20,10 @@ Side: TypeAlias = tuple[Floats, Floats]
 def lines_between(
     points: Points, begin: Floats, end: Floats, sizes: tuple[Floats, Floats], cells: int
 ) -> Floats:
-    """Return s, theta, zeta (n, cells + 1, 3) (`BodyMap`) of nodes on lines from `begin` to `end` (n, 3).
+    """Return nodes (n, cells + 1, 3) on lines from `begin` to `end` (n, 3): s, theta, zeta of `BodyMap`.
 
-    `sizes` are the differences in s (n,) over the first and over the last cell. Between them, physical cell
-    lengths change smoothly. `points` maps nodes to x, y, z.
+    `sizes` are the steps of s (n,) over the first and over the last cell. Between these cells, the cell
+    lengths in space change smoothly. `points` maps nodes to x, y, z.
     """
     lines, arcs, ends = _measured(points, begin, end, sizes)
     nodes = sampled(lines, arcs, smooth_arcs(arcs[:, -1], ends, cells))

@@ -74,11 +74,11 @@ class LoftedMap(BodyMap):
         return super().places(lowered)
 
     def around(self, places: Floats) -> Floats:
-        """Return the physical length (...) of one radian of theta at s, theta, zeta = `places` (..., 3)."""
+        """Return the length in space (...) of one radian around the body at `places` (..., 3)."""
         return np.asarray(norms(self._around(places)))
 
     def steepness(self, places: Floats) -> Floats:
-        """Return angles (...) in radians between z and the body's cross-section, at `places` (..., 3)."""
+        """Return the angle (...), in radians, from the z axis to the body's outline at `places` (..., 3)."""
         around = np.abs(self._around(places))
         return np.asarray(arctan2(around[..., 1], around[..., 2]))
 

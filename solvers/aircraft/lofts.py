@@ -39,9 +39,9 @@ def section_loft(stack: Stack, unit: Floats) -> Loft:
 
 
 def fin_loft(fin: Fin, unit: Floats) -> Loft:
-    """Return spanwise lines of the half z >= 0 of a fin with its span along y, from nose to trailing edge.
+    """Return lines along the span (y) of the half z >= 0 of a fin, from nose to trailing edge.
 
-    `unit` (sections, n, 2) are nodes around its sections at unit chord.
+    `unit` (sections, n, 2) are nodes around its sections, scaled to chord 1.
     """
     half = (unit.shape[1] - 1) // 2
     upper, lower = unit[:, half::-1], unit[:, half:]

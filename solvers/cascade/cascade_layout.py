@@ -158,7 +158,7 @@ def row_steps(first: float, length: float, largest: float) -> Floats:
 def counts_of(
     cascade: Cascade, chords: Chords, cells: int | None, cell_size: float | None
 ) -> tuple[Indices, int, SizeMetric]:
-    """Return the coarse cell count of each chord, the factor to final counts, and target cell sizes."""
+    """Return coarse cell counts of `chords` (opposite edges), a factor to final counts, and target sizes."""
     sizes = cascade.metric
     wanted = WantedCounts(chords, sizes)
     if cell_size is not None:

@@ -80,7 +80,7 @@ class PassageFlow:
 
     @cached_property
     def far(self) -> tuple[float, float]:
-        """Real part of ζ - G (see `PassageFlow`) far upstream, and far downstream of the blades."""
+        """Real part of coordinate minus potential, ζ - G (`PassageFlow`), far upstream and far downstream."""
         before, behind = self.inside(self.half * np.array([-1.0, 1.0], dtype=np.complex128))
         return float(before.real), float(behind.real)
 

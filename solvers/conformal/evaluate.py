@@ -52,10 +52,11 @@ class StripGrid:
         return np.asarray(F + 1j * theta)
 
     def fill(self, lift: Lift, out: Floats, axis: Axis | None = None, shift: Shift | None = None) -> bool:
-        """Map the grid, except its walls, to the plane (`out`: (n + 1, nj, 2)); return whether all is finite.
+        """Map all inner nodes to the plane (`out`: (n + 1, nj, 2)); return whether the results are finite.
 
-        `lift` is the conformal map from the strip to the plane. The last row repeats the first bitwise. With
-        an `axis`, rows i and n - i are mirror images. `shift` is added to phi, the imaginary part of w.
+        `lift` maps the strip, in which the grid was computed, conformally to the plane. The last row repeats
+        the first bitwise. With an `axis`, rows i and n - i are mirror images. `shift` moves points of the
+        strip parallel to its walls.
         """
         n, (ends, points, matrix) = len(self.theta), self._panels
         begin, far = ends[0], self.eta[ends[-1] : -1]

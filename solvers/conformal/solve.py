@@ -43,10 +43,10 @@ def solve(
 ) -> list[Solution]:
     """Return a grid inside each O boundary; the boundary nodes are bitwise kept.
 
-    `polish` is the number of Picard iterations, ``auto`` or ``off``. `correction` returns a term for all
-    boundaries that is added to their harmonic extensions; `model` is the name of the network that computes
-    it. If a boundary has no conformal map, `substitute` makes its grid from the boundary and the reason. If
-    `substitute` is None or returns None, the elliptic solver makes the grid.
+    `polish` is the number of Picard iterations, ``auto`` or ``off``. They start from harmonic grids.
+    `correction` computes, by the network called `model`, terms that are added to these grids. A boundary
+    without a conformal map is passed to `substitute`, with the reason. If this function returns None or is
+    not given, the elliptic solver makes the grid.
     """
     across()  # made once a process: no part of a grid's time
     begun = time.perf_counter()

@@ -127,7 +127,7 @@ def to_columns(c: Any, xp: Any = np) -> Any:
 
 
 def from_columns(values: Any, xp: Any = np) -> Any:
-    """Return the modes (..., 2 MODES + 1) of functions from samples at `COLUMNS` equal steps of theta."""
+    """Return the Fourier modes (..., 2 MODES + 1) of functions from `COLUMNS` values at equal steps."""
     spectrum = xp.fft.fft(values) / COLUMNS
     return xp.concatenate([spectrum[..., : MODES + 1], spectrum[..., -MODES:]], -1)
 

@@ -48,12 +48,12 @@ def walls(boundary: Boundary) -> StripWalls:
 
 
 def is_rough(body: StripWalls) -> bool:
-    """Return whether the strip hardly resolves an uneven spacing of the wall, so that cells may fold.
+    """Return whether Fourier modes hardly resolve the uneven spacing of the wall, so that cells may fold.
 
-    The criterion is the sum of the amplitudes, in radians, of Fourier modes beyond `MODES` / 2, with the
-    limits `SHARPEST` and `ROUGHEST`. The sum is at most 0.013 for airfoils, or 0.06 if nodes are evenly
-    spaced around the leading edge. It is at least 0.02 for polygons, and 0.01 for a square far field. Raises
-    InputError if the strip does not resolve the wall or the far field.
+    The criterion is the sum of the amplitudes of modes beyond `MODES` / 2, in radians. It is at most 0.013
+    for airfoils, or 0.06 if nodes are evenly spaced around the leading edge. For polygons it is at least
+    0.02, for a square far field at least 0.01. Raises InputError if the modes do not resolve the wall or the
+    far field.
     """
     n = len(body.wall)
     k = np.minimum(np.arange(n), n - np.arange(n))

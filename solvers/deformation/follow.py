@@ -53,7 +53,7 @@ class Field:
         return moved.T
 
     def transposed(self, pull: Floats) -> Floats:
-        """Return the gradient of Σ pull · displacement by the planar motions (6, k); `pull` is (m, 2)."""
+        """Return the gradient (6, k), by planar motions, of the sum of displacements times `pull` (m, 2)."""
         gathered = np.empty((6, len(self.areas)))
         force = np.ascontiguousarray(pull.T)
         blend_transposed(self.places, self.areas, self.near, self.points, force, gathered)

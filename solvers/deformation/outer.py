@@ -85,7 +85,7 @@ class NodeTable:
 
 
 def lines_of(pieces: Sequence[Piece]) -> list[Indices]:
-    """Join planar pieces to polylines of node indices (n,); a closed one repeats its first node."""
+    """Join boundary pieces of a planar grid to polylines of node indices (n,); closed ones repeat a node."""
     left = [piece.numbers for piece in pieces]
     lines = []
     while left:

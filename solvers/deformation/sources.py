@@ -49,7 +49,7 @@ def sources_of(table: NodeTable, moved: Bools) -> Sources:
 
 
 def areas_of(nodes: Floats, elements: Indices) -> Floats:
-    """Return the length or area (n,) that belongs to each node: an equal share of each of its `elements`."""
+    """Return the length or area (n,) that belongs to each node; nodes of an element share it equally."""
     corners = nodes[elements]
     if elements.shape[1] == 2:
         size = norms(corners[:, 1] - corners[:, 0])

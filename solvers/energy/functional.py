@@ -19,15 +19,15 @@ class Weights:
     """Weights w and β of the functional E.
 
     u and v are the edges along xi and eta at a corner of a cell, or their means at its centre. Then g = |u|²,
-    h = |v|² and J = u × v. a is the aspect ratio, and l are the lengths of the edges of one family::
+    h = |v|² and J = u × v. a is the aspect ratio, and l is the length of an edge along xi or along eta::
 
-        E = mean over cells of (mean over corners + 2 at the centre) / 3 of
-                (1-w) (a g + h/a) / (2J) + w (g h / J²)²
-          + β mean over cells of the squares of (ni-1) Δ_i log l and (nj-1) Δ_j log l, both families
+        T = (1-w) (a g + h/a) / (2J) + w (g h / J²)²
+        E = mean over cells of (mean of T at corners + 2 T at the centre) / 3
+          + β mean over cells of the squares of (ni-1) Δ_i log l and (nj-1) Δ_j log l, for both l
 
-    The first term is the discrete harmonic functional, which is infinite at J = 0. The second is 1/sin⁴ of
-    the angle. The third is the squared gradient of log l; it prevents alternately narrow and wide cells. For
-    folded grids, J is replaced by χ = (J + √(J² + ε²)) / 2 > 0.
+    The first term of T is the discrete harmonic functional, which is infinite at J = 0. The second is 1/sin⁴
+    of the angle. The term with β is the squared gradient of log l; it prevents alternately narrow and wide
+    cells. For folded grids, J is replaced by χ = (J + √(J² + ε²)) / 2 > 0.
     """
 
     shape: float = 0.97  # w, from 0 (harmonic) to 1 (angles only)

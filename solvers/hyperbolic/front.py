@@ -104,9 +104,9 @@ class Front:
 
 
 def opening(behind: Floats, higher: Floats) -> Floats:
-    """Return by which factors (n,) first cells along a wake are higher than at the wall.
+    """Return the heights (n,) of first cells along a wake, relative to the first-cell height at the wall.
 
-    `behind` (n,) are distances behind the trailing edge, in chords. `higher` (n,) is added to the factors.
+    `behind` (n,) are distances behind the trailing edge, in chords. `higher` (n,) is added to the result.
     """
     return np.asarray(1.0 + _OPENING * behind**2 / (behind + _NEAR) + higher)
 

@@ -110,10 +110,10 @@ def evened_places(
 ) -> Floats:  # fmt: skip
     """Return ascending positions `places` (n,), moved until ratios of neighbouring steps are limited.
 
-    Each of the functions `measures` turns positions into lengths, whose differences are steps. Positions in
-    the mask `fixed` (n,) stay. `limit` is the logarithm of the largest ratio; it is relaxed if positions
-    would move by more than `most` steps. On a closed curve, the last step leads to the first position.
-    `links` are further conditions on positions. `change` is the weight μ of `GrowthLimit`.
+    The functions `measures` turn positions into lengths; steps are the differences of successive lengths.
+    Positions in the mask `fixed` (n,) stay. `limit` is the logarithm of the largest ratio; it is relaxed if
+    positions would move by more than `most` steps. On a `closed` curve, the last step leads to the first
+    position. `links` are further conditions. `change` is the weight μ of `GrowthLimit`.
     """
     line = _Line.of(places, fixed, measures, closed, links, change)
     new = places

@@ -61,10 +61,11 @@ class GrowthLimit:
 
 
 def damped(values: Callable[[Numbers], Floats], at: Numbers, step: Numbers, part: Indices) -> Numbers:
-    """Return the `step` (m,) of unknowns, halved until all values (p,) decrease; 0 if that does not help.
+    """Return the `step` (m,) of m unknowns, with parts of it halved until all values (p,) decrease.
 
-    `values` computes the values from unknowns; `at` (m,) are the present unknowns. Each value depends on some
-    of the unknowns, whose steps are halved together: `part` (m,) has the index of the value.
+    `values` computes p values from the unknowns, which are now `at` (m,). Each unknown affects one value,
+    whose index is in `part` (m,). Steps that affect the same value are halved together, and are 0 if it never
+    decreases.
     """
     start = values(at)
     share = np.ones(len(start))

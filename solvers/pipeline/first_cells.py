@@ -79,9 +79,9 @@ def along_walls(boundary: Boundary, request: OneBlock) -> bool:
 def has_walls_on_sides(shape: Shape, request: GridRequest) -> bool:
     """Return whether the walls that a request names are whole sides of a four-sided domain of one block.
 
-    If the request neither asks for one block nor gives both node counts, these walls must also be opposite
-    each other, and the request must not refine. Raises InputError if no wall has a requested name, or if
-    walls on the same side of one block have different heights.
+    If the request leaves the number of blocks open, these walls must also be opposite each other, and the
+    request must not refine. Raises InputError if no wall has a requested name, or if walls on the same side
+    of one block have different heights.
     """
     heights = request.first_cell if request.y_plus is None else request.y_plus
     off = heights if isinstance(heights, Mapping) else dict.fromkeys(request.walls, 0.0)

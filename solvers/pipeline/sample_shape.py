@@ -101,8 +101,8 @@ def _check_refined(ni: int, nj: int, halvings: int) -> None:
 def keeps_base(shape: Shape, request: GridRequest) -> TypeGuard[Airfoil]:
     """Return whether a request marches a C grid that keeps the blunt base (trailing edge) of an airfoil.
 
-    `te` ``exact`` keeps every base. With ``auto``, a base is kept if it is at least `RESOLVED` first cells
-    high, or if it is not thin and higher than the first cell. Without a first-cell height, it is kept if it
+    `te` ``exact`` keeps every base. With ``auto`` and a first-cell height, a thin base must be at least
+    `RESOLVED` first cells high, and any other base one first cell. With ``auto`` alone, a base is kept if it
     is not thin and no option, such as `refine`, excludes such grids.
     """
     sampling = request.sampling

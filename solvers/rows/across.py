@@ -23,7 +23,7 @@ class ChannelLines:
 
     @classmethod
     def of(cls, planes: Sequence[SectionPlane]) -> Self:
-        """Return the mean lines of the sections `planes`."""
+        """Return the lines across the channel, averaged over the sections `planes`."""
         upper = ON_SIDE
         squares, sums = np.zeros(len(upper)), np.zeros(len(upper))
         for lower, slant in (plane.across for plane in planes):
@@ -54,7 +54,7 @@ class ChannelLines:
         return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
     def weights(self, pairs: Floats) -> Floats:
-        """Return weights (p,) of lines: `slant`² at their first ends; `pairs` (p, 2) are u of their ends."""
+        """Return the weights (p,) of p lines that join places `pairs` (p, 2) on neighbouring blades."""
         return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
 
     def aside(self, pairs: Floats) -> Floats:

@@ -44,9 +44,9 @@ def respaced_columns(values: Floats, space: Floats, first: float) -> Floats:
 
 
 def resampled(values: Floats, steps: Floats, new: Floats) -> Floats:
-    """Return `values` (k, m, 2) at the nodes of k lines, interpolated to new nodes.
+    """Return `values` (k, m, 2) of the nodes on k lines, interpolated to new nodes on the same lines.
 
-    `steps` (k, m - 1) are the lengths of the given cells, `new` (k, m - 1) of the new cells; sums are equal.
+    `steps` (k, m - 1) are the lengths of cells, `new` (k, m - 1) the lengths of cells between the new nodes.
     """
     arcs = arcs_of(steps)
     return sampled(values, arcs, arcs_of(new))

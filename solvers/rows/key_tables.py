@@ -41,7 +41,7 @@ class KeyTables:
 
 
 def key_tables(row: Row, first: float, growth: float, cells: int) -> KeyTables:
-    """Return the key sections of a row, between which nodes are interpolated, with about `cells` cells each.
+    """Return sections of a row, with about `cells` cells each, between which nodes are interpolated later.
 
     `first` is the first-cell height, `growth` the growth ratio of the layers. Raises InputError if there is
     no room for layers, inlet or outlet. Raises NoValidGridError if cells are folded.

@@ -93,7 +93,7 @@ class SectionPlane:
 
     @property
     def wake(self) -> float:
-        """Theta at the outlet minus theta at the trailing edge, on a straight line.
+        """Increase of theta from the trailing edge to the outlet, along a straight line.
 
         The line continues the mean line of the blade, at an angle of at most `STEEPEST` degrees to the axis.
         """

@@ -70,7 +70,7 @@ class StackedRow:
 
     @cached_property
     def levels(self) -> tuple[int, ...]:
-        """Index of the first level of each zone of the span, and of the last level of the last zone."""
+        """Indices of the levels that bound the zones of the span (blade and gaps), from hub to casing."""
         return tuple(np.cumsum([0, *(zone.cells for zone in self.zones)]).tolist())
 
     @cached_property

@@ -28,7 +28,7 @@ _AS_GOOD = "the grid is kept as it was: its optimum is no better"
 def smooth(grid: Grid, *, slide: bool = False, iterations: int = ITERATIONS) -> Solution:
     """Return `grid` with its nodes at the variational optimum of all blocks; boundary nodes may `slide`.
 
-    In one of two optima, jumps of the spacing between blocks are evened out; the better optimum is used.
+    Two optima are computed, one of them with evened-out spacing between blocks; the better one is used.
     Displacements are reduced where the largest non-orthogonality or skewness of a face, or the mean deviation
     from 90 degrees, would become larger. Raises InputError if the blocks are not planar or do not form a
     domain.

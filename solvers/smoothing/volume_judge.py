@@ -31,7 +31,7 @@ class VolumeMeasures:
 
     @property
     def bound(self) -> float:
-        """Smallest scaled Jacobian that another mesh may have without counting as worse than this mesh."""
+        """Smallest scaled Jacobian at which another mesh still counts as no worse than this mesh."""
         return min(_PART * self.least, _GOOD)
 
 

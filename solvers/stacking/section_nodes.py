@@ -55,8 +55,8 @@ class Around:
     def ends(self, height: float, length: float, nose: float | None = None) -> tuple[float, float]:
         """Return the lengths of the cells next to the base and at the nose, as fractions of `length`.
 
-        `height` is the height of the base, `length` the length of the side, both in chords. `nose` is the
-        length of nose cells in chords, used if the attribute `nose` is not set (default: 0.35 mean cells).
+        `height` is the height of the base, `length` the length of the side, both in chords. `nose` (in
+        chords) is the default of the attribute `nose`; None: 0.35 mean cells.
         """
         edge = min(_EDGE_CELL * max(height, self.gap) / self.base, 1.0 / self.cells)
         first = edge if self.edge is None else self.edge / length

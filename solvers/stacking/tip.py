@@ -43,10 +43,10 @@ class Cap:
         return (nodes - 1) * self.rows + (nodes // 2 - 2 * self.short) * 2 * self.short
 
     def patches(self, loop: Floats) -> tuple[Floats, Floats]:
-        """Return the nodes (ni, nj, 3) of the two patches of the cap: a ring of cells and the core inside it.
+        """Return the nodes (ni, nj, 3) of two patches that close the tip: a ring and the core inside.
 
         The closed `loop` (n, 3) is in a plane of constant z. It starts at the trailing edge and runs along
-        the upper side first. Normals of both patches point to +z, where the cap is.
+        the upper side first. Normals of both patches point to +z.
         """
         made = {(1.0, 1.0): self._placed(loop, 1.0, 1.0)}
         best = 1.0, 1.0

@@ -56,7 +56,7 @@ class CrossSection:
         return [middle + core * ((1.0 - bend) * line + bend * arc - middle) for line, arc in both]
 
     def across(self, core: float, radial: float, *, eighth: bool = False) -> tuple[Floats, Floats]:
-        """Return the lengths (k,) of lines through the ring, and of the core cells (k,) at the ends of lines.
+        """Return lengths (k,) of lines from the wall to the core, and sizes (k,) of the core cells there.
 
         If `eighth`, only an eighth of the lines is returned, which suffices for a circle.
         """

@@ -99,8 +99,7 @@ def _index(faces: SixFaces, side: Side, second: Side, at: int) -> list[int]:
 def closed_place(faces: SixFaces) -> Place | None:
     """Return i, j, k of an inner node for which there is no valid position; None if there is no such node.
 
-    Each face next to a node restricts it to four half-spaces. There is a valid position if all of these have
-    a common point (kernels/volumes/near_faces.c).
+    Only nodes next to faces are tested: the given face restricts them (kernels/volumes/near_faces.c).
     """
     for sides, ranges in next_to_faces(faces.counts):
         walls = tuple((np.ascontiguousarray(getattr(faces, side)), *PLACES[side]) for side in sides)

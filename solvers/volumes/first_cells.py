@@ -18,8 +18,8 @@ REACH = 12.0  # number of steps over which the correction decays by a factor e
 def keep_first_cells(planes: Floats, faces: SixFaces, laws: Laws) -> tuple[str, ...]:
     """Restore first-cell heights in `planes` (3, ni, nj, nk), in place; return the names of changed faces.
 
-    This is done at faces towards which nodes are clustered. The height at a node of a face is interpolated
-    from the heights at the four edges of the face.
+    A face is changed if the parameters `laws` along edges are clustered towards it. The heights at its nodes
+    are interpolated from the heights at its four edges.
     """
     kept: list[str] = []
     for axis in range(3):

@@ -46,7 +46,7 @@ def scale_of(values: Floats) -> Scale:
 
 
 def histogram(values: Floats, scale: Scale) -> list[int]:
-    """Return how many `values` are in each of `BARS` equal intervals; the outer intervals are open."""
+    """Return how many `values` are in each of `BARS` equal intervals; the outer ones include outliers."""
     first, last = scale.parts(np.array([scale.start, scale.stop]))
     part = (scale.parts(values) - first) / max(last - first, 1e-300)
     bar = np.clip((part * BARS).astype(np.int64), 0, BARS - 1)

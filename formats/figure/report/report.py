@@ -15,7 +15,7 @@ SHOWN = 20  # largest number of grids with pictures in a report; of more grids, 
 
 
 class QualityPage:
-    """Quality page of grids, with details of the `SHOWN` worst grids: failed ones, then by largest angle."""
+    """Quality page of grids, with details of up to `SHOWN` grids that failed or have the largest angles."""
 
     def __init__(self, gates: Sequence[Gate] = (), software: str = "meshonet") -> None:
         self._gates, self._software = tuple(gates), software

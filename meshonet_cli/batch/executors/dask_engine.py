@@ -47,7 +47,7 @@ _SETTINGS = {
 
 @contextmanager
 def opened(engine: Engine, warn: Warn) -> Iterator[Workers]:
-    """Return a context with the workers of the Dask scheduler of `engine`, or of a local cluster."""
+    """Return a context with the workers of a Dask cluster: the one named in `engine`, or a local one."""
     try:
         import distributed  # noqa: F401  (a second)
     except ImportError:

@@ -25,9 +25,9 @@ _NONE: Mapping[int, int] = MappingProxyType({})
 
 
 def sums_of(chords: Chords) -> Sums:
-    """Return, for each side with a given cell count, how many of its edges each chord (`Chords`) contains.
+    """Return, for each side with a given cell count, how many edges of each chord lie on this side.
 
-    Raises InputError if such a side begins or ends where the boundary goes straight on.
+    A chord is a set of opposite edges. Raises InputError if an end of such a side is no corner.
     """
     mesh = chords.layout.mesh
     given = mesh.domain.counts

@@ -112,6 +112,6 @@ def _march(start: Floats, cells: int, first: float, ratios: Floats, settings: Ma
 
 
 def folded_columns(levels: Floats) -> Bools:
-    """Return a mask (n,) of the columns with a folded cell; each level in `levels` (n, m, 2) is closed."""
+    """Return which columns (n,) have a folded cell; `levels` (n, m, 2) are m closed curves of n nodes."""
     cells = ring_of(np.concatenate([levels, levels[:1]])).transpose(1, 2, 0, 3)
     return np.asarray((corner_jacobians(cells.reshape(-1, 4, 2)) <= 0.0).reshape(len(levels), -1).any(axis=1))

@@ -46,7 +46,7 @@ class NearField:
 
     @classmethod
     def of(cls, domain: Domain) -> Self | None:
-        """Return the near field of a domain; None if its outer loop is not smooth, far and star-shaped."""
+        """Return the near field of a domain; None unless its outer loop is smooth, far and star-shaped."""
         outer = domain.loops[0]
         if len(domain.loops) < 2 or outer.corners:
             return None
@@ -74,7 +74,7 @@ class NearField:
     def cells(self, first: float, settings: LayerSettings) -> int:
         """Return the number of cells on a line from the circle around the bodies to the outer boundary.
 
-        `first` is the height of the cells inside the circle that touch it.
+        `first` is the height of the cells just inside the circle.
         """
         growth, multiple = settings.below(GROWTH), settings.multiple
         distance = float(self.radii.mean()) - self.radius

@@ -151,9 +151,9 @@ def march_ring(
 
 
 def room_between(rings: Mapping[int, Ring]) -> dict[int, Floats]:
-    """Return, by loop index, the permitted thickness (n,) at the columns of rings too close to another ring.
+    """Return, by loop index, the permitted thickness (n,) of layers at nodes too close to other layers.
 
-    Rings can collide although walls do not face each other, because columns fan out around sharp edges.
+    Layers can collide although walls do not face each other, because they fan out around sharp edges.
     """
     rooms = {}
     walls = {k: np.arange(_SAMPLES) / _SAMPLES * ring.wall.length for k, ring in rings.items()}

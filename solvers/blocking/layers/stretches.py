@@ -42,8 +42,8 @@ class Stretch:
 def layered_walls(domain: Domain, names: Collection[str] = ()) -> tuple[list[int], tuple[Stretch, ...]]:
     """Return the indices of the loops with layers all around, and the parts of other loops with layers.
 
-    `names` are the walls with layers. Without names, `Domain.layered_loops` have layers, except parts whose
-    names stand for no wall. Layers continue along an axis or symmetry line that continues a wall. Raises
+    `names` are the walls with layers. Without names, parts of `Domain.layered_loops` have layers if they may
+    be walls by their names. Layers continue along an axis or symmetry line that continues a wall. Raises
     InputError if no wall has layers, or if layers would end where the boundary is straight or turns away.
     """
     whole: list[int] = []

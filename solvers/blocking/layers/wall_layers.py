@@ -248,7 +248,7 @@ def wanted_counts(
 ) -> Counts:
     """Return counts for about `cells` cells in total or, if `cells` is 0, for cells of the length `size`.
 
-    During the optimisation each row of layers has `ROWS` cells across. `before` are the previous counts.
+    `before` are the counts of the previous iteration, None in the first one.
     """
     multiple, row = walls.settings.multiple, rows.of_chords(chords)
     wakes = rows.wakes(chords.layout)

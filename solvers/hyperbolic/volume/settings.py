@@ -129,5 +129,5 @@ CONCAVE_ATTEMPTS = (
 
 
 def attempts_for(*, concave: bool, wing: bool) -> tuple[Smoothing, ...]:
-    """Return the parameters to be tried in turn on a surface, which has `concave` edges or is a `wing`."""
+    """Return parameters to be tried in turn on a surface, which may have `concave` edges or be a `wing`."""
     return CONCAVE_ATTEMPTS if concave else WING_ATTEMPTS if wing else ATTEMPTS

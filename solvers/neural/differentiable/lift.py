@@ -14,9 +14,9 @@ from meshonet.solvers.neural.quad.unrolled import middles
 
 @dataclass(frozen=True)
 class TorchWalls:
-    """The images of a body, `wall`, and of its far field, `far`, in a strip; see `StripWalls`.
+    """Nodes of a body, `wall`, and of its far field, `far`, mapped conformally to a strip (`StripWalls`).
 
-    `lift` holds the coefficients of the conformal map as tensors, `numpy` holds them as NumPy arrays.
+    `lift` has the coefficients of the conformal map as tensors, `numpy` has them as NumPy arrays.
     """
 
     lift: Lift

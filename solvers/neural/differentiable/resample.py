@@ -132,6 +132,6 @@ def folded(nodes: Tensor) -> Tensor:
 
 
 def between(values: Tensor, n: int) -> Tensor:
-    """Interpolate `values` (..., m) at uniform places linearly to `n` uniform places; return (..., n)."""
+    """Return `n` equally spaced values (..., n), interpolated linearly between `values` (..., m)."""
     m = values.shape[-1]
     return values if m == n else values @ array_like(acute.linear(m, n), values, torch).mT

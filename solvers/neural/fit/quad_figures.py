@@ -70,9 +70,9 @@ def _share(values: Bools) -> float:
 def excess(z: Tensor, goal: Tensor) -> tuple[Tensor, Tensor, Tensor]:
     """Return three measures (batch,) of how much worse complex grids `z` (batch, m, n) are than `goal`.
 
-    The first two are in radians and at least 0: the increase of the mean, and of the maximum, of the greatest
-    angles of cells. The third grows with the number of angles beyond the limits `NARROW` and `WIDE`, and with
-    their excess; angles that are not worse than in the same cell of `goal` do not count.
+    The first two compare the greatest angle of each cell. They are the increases, in radians, of the mean and
+    of the maximum over all cells; decreases count as 0. The third grows with angles outside the limits
+    `NARROW` and `WIDE` that are worse than in the same cell of `goal`.
     """
     least, most = extremes(z)
     with torch.no_grad():

@@ -150,9 +150,9 @@ class LNO(AlongXi):
 def respond(xp: Any, poles: Any, residues: Any, h: Any) -> Any:
     """Return the responses (batch, n, out) of linear systems to `h` (batch, n, in), at n places from 0 to 1.
 
-    `poles` (in, out * poles, 2) has the logarithm of the decay rate, and the frequency in half turns;
-    `residues` has the shape (in, out, poles, 2). With poles mu_n, residues beta_n, and the Fourier
-    coefficients alpha_l of h with frequencies omega_l, the response from rest at the place xi is ::
+    `poles` (in, out * poles, 2) are the logarithms of decay rates, and the frequencies in half turns.
+    `residues` (in, out, poles, 2) are real and imaginary parts. With poles mu_n, residues beta_n, and the
+    Fourier coefficients alpha_l of h at frequencies omega_l, the response that starts at rest is ::
 
         sum_l alpha_l H(i omega_l) exp(i omega_l xi) - sum_n beta_n A(mu_n) exp(mu_n xi)
         H(s) = sum_n beta_n / (s - mu_n)        A(s) = sum_l alpha_l / (i omega_l - s)

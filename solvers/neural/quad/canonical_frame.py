@@ -53,9 +53,8 @@ class Canonical:
 def canonical(boundary: Boundary) -> Canonical:
     """Return a four-sided or O boundary in its canonical frame; unchanged if rounding would merge its nodes.
 
-    Boundaries that differ by translation, rotation, scaling, mirroring or names of sides have bitwise the
-    same nodes in the canonical frame, which are rounded to 1e-9 of the domain's size. Otherwise minimisation
-    would amplify their different rounding errors.
+    Boundaries that differ by translation, rotation, scaling, mirroring or names of sides get bitwise equal
+    nodes. Nodes are rounded to 1e-9 of the domain's size, since minimisation would amplify rounding errors.
     """
     return _of_body(boundary) if boundary.periodic else _of_quad(boundary)
 

@@ -53,8 +53,8 @@ def features(z: Any, step: Any, xp: Any, around: bool = False) -> Any:
     """Return the network's inputs (batch, n, n, FEATURES) for normalised complex grids `z` (batch, n, n).
 
     `step` (batch, n, n) is the last Picard step (see `picard.approach`). With `around`, `z` are O grids
-    unrolled to strips (batch, m + 1, n), whose last column is the first plus one period. The result then has
-    the shape (batch, m, n, FEATURES), and positions are relative to nodes at equal steps.
+    unrolled to strips (batch, m + 1, n), in which the last of m + 1 lines is the first plus one period. The
+    result then has the shape (batch, m, n, FEATURES).
     """
     n = z.shape[-1]
     if around:

@@ -40,10 +40,10 @@ def unrolled(z: Any, centres: Any, xp: Any = np) -> tuple[Any, Any]:
 
 
 def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any = np) -> tuple[Any, Any, Any]:
-    """Return the strips of `walls` (batch, m + 1, n), their centres (batch,), and a mask (see `unrolled`).
+    """Return strips of `walls` (batch, m + 1, n), their centres (batch,), and a mask; see `unrolled`.
 
-    The centre is the centroid inside the body's closed curve `wall` (batch, ni). If `walls` do not wind
-    exactly once around it, the centre is instead the result of `inside` for the curve ``walls[k, :-1, 0]``.
+    The centre is the centroid inside the body's closed curve `wall` (batch, ni). If the lines of `walls` do
+    not wind exactly once around it, the centre is instead ``inside(walls[k, :-1, 0])``.
     """
     centres = middles(wall[:, :-1], xp)
     strips, once = unrolled(walls, centres, xp)

@@ -46,10 +46,9 @@ def score(blocks: BaseComplex, price: float = PRICE, wanted: Floats | None = Non
 
 
 def size_spread(blocks: BaseComplex, wanted: Floats | None) -> float:
-    """Return how uneven sizes are: the mean square of log(length of a block side / mean over its chord).
+    """Return how unequal block sides with the same number of cells are: the variance of log(length).
 
-    All sides of a chord (row of blocks) have the same number of cells. Means are weighted by block areas. If
-    target lengths `wanted` (e,) of edges are given, lengths are divided by them.
+    Blocks are weighted by areas. Lengths are relative to the target lengths `wanted` (e,) of edges, if given.
     """
     lengths = log(blocks.side_lengths(wanted))
     chord = blocks.sides[2]

@@ -19,7 +19,7 @@ _LARGEST = (
 
 @dataclass(frozen=True, eq=False)
 class Frames:
-    """One direction (a frame) in each triangle, selected from the four of its cross."""
+    """One direction in each triangle, selected from the four directions of the cross field."""
 
     field: CrossField
     angles: Floats  # (t,) angle of the direction u

@@ -22,7 +22,7 @@ Span = tuple[int, float, float]
 
 
 def wrong_count(mesh: QuadMesh) -> Bools:
-    """Return a mask (n,) of wall nodes whose number of quads is not 2 or, at a corner, not `places.cells`."""
+    """Return a mask (n,) of wall nodes with a wrong number of quads; away from corners, 2 are right."""
     cells = mesh.places.cells
     return np.asarray(mesh.wall_nodes & (mesh.valence != np.where(cells > 0, cells, 2)))
 
@@ -34,7 +34,7 @@ def loops_to_pad(mesh: QuadMesh) -> list[int]:
 
 
 def spans_to_pad(mesh: QuadMesh, spans: Sequence[Span]) -> list[Span]:
-    """Return the `spans` (parts of loops) with a wrong number of quads at a node between their ends."""
+    """Return the `spans` (parts of loops) in which a node other than the ends has a wrong number of quads."""
     places, wrong = mesh.places, wrong_count(mesh)
     return [
         (loop, begin, end)

@@ -87,9 +87,9 @@ class Triangulation:
 
     @cached_property
     def edge_weights(self) -> Floats:
-        """(t, 3) negative half of the cotangent of the angle opposite to each edge.
+        """(t, 3) minus half the cotangent of the angle opposite to each edge.
 
-        It is the integral over the triangle of the product of the `gradients` of both ends of the edge.
+        This equals the integral over the triangle of the product of both end points' `gradients`.
         """
         g = self.gradients
         return np.asarray(self.areas[:, None] * times(g, np.conj(g[:, NEXT])).real)

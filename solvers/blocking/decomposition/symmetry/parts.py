@@ -89,7 +89,7 @@ def part_of(domain: Domain, mirrors: Sequence[Mirror]) -> DomainPart:
 
 
 def sector_of(domain: Domain, mirrors: Sequence[Mirror], start: int) -> DomainPart:
-    """Return the sector from `mirrors[start]` to the mirror after the next; `mirrors` are sorted by angle.
+    """Return the sector from mirror `start` to mirror `start` + 2; `mirrors` are sorted by angle.
 
     Raises SolverError if a mirror cuts a sharp corner, or if the mirrors meet outside the domain.
     """

@@ -43,12 +43,10 @@ def symmetric_blocks(
 ) -> BaseComplex:  # fmt: skip
     """Return symmetric blocks of the domain of `blocks`, or `blocks` if symmetric blocks are clearly worse.
 
-    The score of symmetric blocks may be worse by `worth`. With three mirrors or more than four, blocks
-    symmetric about all of them are tried: first the given blocks, then blocks made from a sector. With two
-    perpendicular mirrors, blocks symmetric about both are tried first, then about one of them. Blocks that
-    are also symmetric about the two diagonals are preferred. Given blocks that are symmetric are replaced
-    only if blocks made from a part of the domain are better and not more numerous. `find` returns the mesh
-    of a part. `unsized` returns a mesh without prescribed edge lengths, which is tried last.
+    The score of symmetric blocks may be worse by `worth`. The given blocks are kept if they are symmetric,
+    unless blocks made from a part of the domain are better and not more numerous. Symmetry about more mirrors
+    is preferred. `find` returns the mesh of a part. `unsized` returns a mesh without prescribed edge lengths,
+    which is tried last.
     """
     mesh, every = blocks.mesh, mirrors_of(blocks.mesh.domain)
     pair = every[:1] if len(every) % 2 else every[:: max(len(every) // 2, 1)]
