@@ -26,7 +26,7 @@ class Winslow:
     """Winslow's equations and their adjoint, as `implicit.Equations`."""
 
     def most(self, nodes: Tensor) -> int:
-        """Return how many grids to solve at once; on a CPU, their Krylov spaces together fit into the cache."""
+        """Return how many grids to solve at once; on a CPU, their Krylov spaces then fit into the cache."""
         return len(nodes) if nodes.is_cuda else MOST // nodes[0].numel()
 
     def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
