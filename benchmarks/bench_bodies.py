@@ -201,7 +201,7 @@ both with the solvers. CPU times are medians, for one thread.
   these angles over the cells of a grid, averaged over the bodies.
 - *gain in mean angle*: 0 % is the mean angle of Winslow's grids, 100 % that of variational grids. Bodies
   whose Winslow grid has folded cells do not count.
-- *distance*: RMS distance from Winslow's converged grid, divided by the RMS distance of nodes from their mean.
+- *distance*: RMS distance of nodes from Winslow's converged grid, divided by that from their centroid.
 
 Bodies for which Winslow's or the variational solver ends with an error are left out: 2 of 40.
 """

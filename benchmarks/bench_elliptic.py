@@ -160,7 +160,7 @@ def conformal(n: int) -> Floats:
 def order() -> Iterator[str]:
     """Yield errors against the conformal map, and the fitted slope."""
     yield "\n## Order of convergence\n"
-    yield "The exact grid is a rectangle mapped by exp ζ. The error is the largest error of a node coordinate.\n"
+    yield "The exact grid is a rectangle mapped by exp ζ. The error is the largest error of a coordinate.\n"
     yield "| nodes | error |\n| --- | --- |"
     counts, errors = np.array([17, 33, 65, 129, 257]), []
     for n in counts.tolist():

@@ -236,7 +236,7 @@ compares both with the solvers. CPU times are medians, for one thread.
 - *gain in mean angle*: 0 % is the mean angle of Winslow's grids, 100 % that of variational grids. Domains
   whose Winslow grid has folded cells do not count. A gain can exceed 100 %, because the variational method
   does not minimise the mean angle itself.
-- *distance*: RMS distance from Winslow's converged grid, divided by the RMS distance of nodes from their mean.
+- *distance*: RMS distance of nodes from Winslow's converged grid, divided by that from their centroid.
 """
 TAIL = """
 ## Conclusions

@@ -239,7 +239,7 @@ grids](../theory/variational.md).
   hexagon 135 degrees).
 - *deviation from 90 degrees at the sides*: mean over the grid lines that leave the four sides.
 - *distance to the solution on all nodes*: RMS distance from the grid of the same method without `--coarse`
-  (for `quad-general`: of `variational`), divided by the RMS distance of nodes from their mean.
+  (for `quad-general`: of `variational`), divided by the RMS distance of the nodes from their centroid.
 - *grids worse than Winslow's*: number of grids whose maximum or mean is larger than in Winslow's grid.
 - *CPU time*: best of several runs; for random domains, the median over the domains.
 

@@ -65,8 +65,8 @@ Use `variational`, not 3DMeshNet: the network takes far more CPU time and makes 
 A 3DMeshNet (`train --model meshnet`) is trained anew for each domain, here for the first {count} domains of
 the section *Quality*, with {epochs} steps (default 15,000). The training is part of the CPU time.
 
-- *3DMeshNet*: the given boundary nodes replace the predicted ones (`infer --answer pasted`). The largest error
-  of a predicted boundary node is {off} % of the domain size (median over the domains).
+- *3DMeshNet*: the given boundary nodes replace the predicted ones (`infer --answer pasted`). The largest
+  error of a predicted boundary node is {off} % of the domain size (median over the domains).
 - *3DMeshNet, repaired*: folded cells are repaired too, as by `infer` without options.
 """
 

@@ -256,9 +256,9 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "From Winslow's grid to the variational grid, the mean and the maximum of the cells' largest angles\n"
-        f"decrease. The predicted variational grid reaches {100 * gain['mean_gain']:.0f} % and "
-        f"{100 * gain['max_gain']:.0f} % of these decreases.",
+        "In variational grids the mean and the maximum of the cells' largest angles are smaller than in\n"
+        f"Winslow's grids. The network reaches {100 * gain['mean_gain']:.0f} % of this reduction of the mean, and "
+        f"{100 * gain['max_gain']:.0f} % of that of the maximum.",
     ]
     return lines
 

@@ -21,8 +21,7 @@ shapes](../../reference/families.md). [Paper models](../../theory/paper-models.m
 - *repaired*: boundary pasted and folded cells repaired, as `infer` does by default.
 - *interpolation*: the training shapes are at both ends of the parameter range of a family, the test shapes in
   the middle. *extrapolation*: the test shapes are at one end. *random*: all shapes have random parameters.
-- *largest angle*, *mean angle*: each cell has a largest angle. These are the maximum and the mean of these
-  angles over the cells of a grid, in degrees.
+- *largest angle*, *mean angle*: maximum and mean of the largest angles of the cells of a grid, in degrees.
 - *relative L2*: RMS distance of the nodes from the grid of the PDE solver, divided by the RMS distance of the
   nodes of this grid from their centroid.
 - *boundary error*: largest distance of a boundary node from the given node.

@@ -64,8 +64,8 @@ class SamplingOptions:
     far_field: float | None = _option(
         metavar="R", help="Smallest distance of the far field from the middle of the body, in chords of a "
         "single airfoil, else in units of the largest extent of all bodies together; for a marched volume in "
-        "the unit of its surface. For lift and drag use 100 or more. [default: 15; for a volume 15 times the largest "
-        "extent of its surface]",
+        "the unit of its surface. For lift and drag use 100 or more. [default: 15; for a volume 15 times the "
+        "largest extent of its surface]",
     )
     wake: float | None = _option(
         metavar="L", help="Length of the wake of a C grid, from the trailing edge, in chords. [default: as "
