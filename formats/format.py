@@ -35,13 +35,13 @@ class Format:
     read_grids, write_grids, write_boundaries, write_layouts : functions; None if not supported.
     sniff : function that recognises a file by its first `HEAD_BYTES` bytes.
     names_patches : whether the format stores the topology and the names of patches.
-    blocks : how planar blocks are written: ``kept``, or ``merged`` into one unstructured mesh; empty: never.
+    blocks : how planar blocks are written: ``kept``, ``merged`` into an unstructured mesh, or empty: not.
     space : kinds of three-dimensional grids that can be read and written.
     many : whether one file can contain several grids or boundaries.
     one_size : whether all samples of a file must have the same node counts and topology.
     beside : whether other files are written next to the file, so that it cannot be written to a stream.
     fills_folder : whether a grid is a folder of files; the file that users name stands for the folder.
-    choices : groups of options that exclude each other; a user may append options to the name.
+    choices : options that a user may append to the name, in groups of which one may be chosen.
     reads_options : whether `read_grids` has a parameter ``options``, as `write_grids` has.
     suffix_options : for an extension, the option that it implies when a file is written.
     """

@@ -79,7 +79,7 @@ class Inputs:
         yield from Walk(self).files()
 
     def own(self) -> Iterator[Numbered]:
-        """Yield the inputs of the shard; in datasets, each sample counts as an input."""
+        """Yield the inputs of the shard (each n-th input); each sample of a dataset counts as an input."""
         k, n = self.shard
         if n == 1:
             yield from map(Numbered, self)

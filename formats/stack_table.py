@@ -89,7 +89,7 @@ def _section(
 def along(row: Table, direct: str, angle: str, z: float, before: list[Section]) -> float:
     """Return x or y of the section in the table `row`, which is at `z` after the sections `before`.
 
-    The key `direct` (``x`` or ``y``) gives the value; by default, the previous section does. Instead,
+    The value is that of the key `direct` (``x`` or ``y``), by default that of the previous section. Instead,
     the key `angle` (``sweep`` or ``dihedral``) may give the angle in degrees between the z axis and the line
     from the previous section. Raises InputError: both keys; an angle of the first section, or above 85
     degrees.

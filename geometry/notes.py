@@ -40,7 +40,7 @@ def changes_in(notes: Iterable[str]) -> tuple[str, ...]:
 
 
 def change_facts(notes: Iterable[str]) -> dict[str, str]:
-    """Return the changes among `notes` as an entry of a grid's provenance; an empty dict if there is none."""
+    """Return the notes on changes (`Change`) as an entry of a grid's provenance, or an empty dict."""
     changes = changes_in(notes)
     return {"changes": "; ".join(changes)} if changes else {}
 

@@ -53,10 +53,10 @@ class NormalEquations:
             done += count
 
     def step(self, residuals: Sequence[Residuals], diagonal: Floats, slope: Floats) -> Floats:
-        """Return the changes of the unknowns, (n,) or (2 n,).
+        """Return the changes (n,) of the unknowns, or (2 n,) of pairs of unknowns.
 
-        `diagonal` has the second and `slope` the first derivatives of additional terms, each a function of
-        one unknown. Raises SolverError if the equations are singular.
+        `slope` and `diagonal` are first and second derivatives of additional terms, each a function of one
+        unknown. Raises SolverError if the equations are singular.
         """
         size, block = self._shape
         values, right = np.zeros(self.pattern.entries * block**2), -slope.reshape(size, block)

@@ -60,7 +60,7 @@ def cycle_ended(
 
 @dataclass(frozen=True)
 class HistoryRow:
-    """One cycle of a history."""
+    """One cycle (iteration) of a solver in the convergence history."""
 
     method: str  # name of the method
     ni: int  # nodes of the grid

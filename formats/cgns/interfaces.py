@@ -29,9 +29,9 @@ def range_of(side: Side, span: Range, counts: tuple[int, ...]) -> Integers:
 def write_connections(zones: Sequence[Node], names: Sequence[str], grid: Grid) -> None:
     """Write each connection of `grid` as an interface into both zones that it connects.
 
-    `zones` and `names` are the node and the name of the zone of each block. The transform of an interface
-    states, for each direction of the zone, the corresponding direction of the donor. A step out of the zone
-    corresponds to a step into the donor. https://cgns.github.io/standard/SIDS/multizone_interface.html
+    `zones` and `names` are the CGNS nodes and the names of the zones, one per block. The transform of an
+    interface states, for each direction of the zone, the corresponding direction of the donor; a step out of
+    the zone is a step into the donor. https://cgns.github.io/standard/SIDS/multizone_interface.html
     """
     groups: dict[int, Node] = {}
     taken: dict[int, set[str]] = {}

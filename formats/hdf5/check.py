@@ -36,7 +36,7 @@ _TEXT = np.dtype([("length", "<u4"), ("heap", "<u8"), ("index", "<u4")])
 
 
 class Checked:
-    """An open dataset: `count` samples of the same `topology`, with `blocks` blocks each in version 2."""
+    """An open dataset with `count` samples of one `topology`; in version 2, a sample has `blocks` blocks."""
 
     def __init__(self, file: h5py.File, source: Source) -> None:
         self._file, self._source = file, source

@@ -156,10 +156,10 @@ class Candidate:
         return [values.reshape(self.size(block), order="F") for values in self.arrays(block)]
 
     def regularity(self) -> float:
-        """Return the fraction of cells with the prevailing orientation; it is negative for impossible values.
+        """Return the fraction of cells with the prevailing orientation; negative if values are impossible.
 
-        Wrong layouts have random orientations. The value is reduced for a surface, since iblank of a planar
-        grid can look like z. Only the first nodes along each index are examined.
+        Orientations are random if the assumed file layout is wrong. The result is reduced for a surface: what
+        is read as z may be iblank of a planar grid. Only the first nodes along each index are examined.
         """
         for block in self.blocks:
             if not all(_sane(values) for values in self.arrays(block)):

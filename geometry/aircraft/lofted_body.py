@@ -145,7 +145,7 @@ class LoftedBody(Body):
         return radius * flatness, radius * (2.0 - flatness), self._middle(x)
 
     def shape(self, s: Floats, theta: Floats) -> Floats:
-        """Return `shape` (n,), as defined by the class, at arc lengths `s` (n,) and angles `theta` (n,)."""
+        """Return the factor `shape` (n,) of `LoftedBody` at arc lengths `s` (n,) and angles `theta` (n,)."""
         arcs = self.arcs
         before = np.clip(np.searchsorted(arcs, s, side="right") - 1, 0, len(arcs) - 2)
         h = arcs[before + 1] - arcs[before]

@@ -76,7 +76,7 @@ class SurfaceWing:
 
     @property
     def z(self) -> Floats:
-        """Equally spaced z (n,), from the lowest z that all lines along the span reach to the tip."""
+        """Equally spaced z (n,) up to the tip; they begin where all lines along the span have begun."""
         begin = max(float(strip[0, :, 2].max()) for strip in self.strips)
         return np.linspace(begin, self.height, _LEVELS)
 
@@ -105,7 +105,7 @@ class SurfaceWing:
 
     @cached_property
     def nose(self) -> float:
-        """Place of the nose around the section (see `line`)."""
+        """Position of the nose around the section, counted in strips as in the method `line`."""
         z = self.z[[_LEVELS // 2]]
         rows = [at_heights(strip, z)[0] for strip in self.strips]
         edge = 0.5 * (rows[0][0] + rows[-1][-1])
@@ -121,7 +121,7 @@ class SurfaceWing:
     def line(self, place: float) -> Floats:
         """Return the line (stations, 3) along the span at a `place` around the section.
 
-        The integer part of `place` is the index of a strip. Its fraction is the position across this strip.
+        The integer part of `place` is an index of `strips`. The rest is a fraction of its arc length.
         """
         return self.lines(np.array([place]))[0]
 

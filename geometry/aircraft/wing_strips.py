@@ -33,8 +33,8 @@ class _Strip:
 def wing_strips(patches: Sequence[Floats], name: str) -> tuple[tuple[Floats, ...], tuple[int, ...]]:
     """Return the strips (stations, n, 3) of a `SurfaceWing`, and the indices of patches that close its tip.
 
-    `patches` (ni, nj, 3) form the surface of a wing in the half z >= 0. Patches on a blunt base are left out.
-    `name` is used in messages.
+    `patches` (ni, nj, 3) form the surface of a wing, where z >= 0. Patches on a blunt trailing edge are left
+    out. `name` is used in messages.
 
     Raises InputError: patches that are not next to each other around the wing, or not along the span.
     """

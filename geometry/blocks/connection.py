@@ -108,9 +108,10 @@ class Connection:
 
 
 def cells_at(connection: Connection, face: Face) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return views, (n, d) or (n, m, d), of values in the cells next to the side and next to the donor.
+    """Return the values of the cells on each side of a connection, as views (n, d) or (n, m, d).
 
-    Both views are in the order of the side. `face` returns the values of the cells at a side of a block.
+    Both views have the order of the cells at `connection.side`. `face` is a function of block and side; it
+    returns d values for each cell at this side.
     """
     spans = [tuple((a, b - 1) for a, b in span) for span in (connection.range, connection.donor_range)]
     return replace(connection, range=spans[0], donor_range=spans[1], transform=None).nodes(face)
@@ -142,7 +143,7 @@ def o_seam(nj: int) -> Connection:
 
 
 def c_wake(ni: int, cells: int) -> Connection:
-    """Return the connection of the first `cells` cells of a C block's south side to its last `cells`."""
+    """Return the connection of a C block across its wake, which is `cells` cells at each end of south."""
     return Connection(0, "south", ((0, cells),), 0, "south", ((ni - 1 - cells, ni - 1),), (-1,))
 
 

@@ -35,9 +35,9 @@ BACK, FRONT = "back", "front"
 def extruded(grid: Grid, heights: Sequence[float]) -> Grid:
     """Return the volumes of a planar `grid`, whose nodes are repeated at each z of `heights`.
 
-    There are at least two heights, in increasing order. Patches and connections extend over all of them. A
-    body that counts as a wall only because of its position gets the kind wall. The sides `bottom` of all
-    blocks form the symmetry plane ``back``, the sides `top` form ``front``. Patches of `grid` with these
+    There are at least two heights, in increasing order. Patches and connections extend over all of them. In a
+    grid around a body, the body becomes a wall unless its patches have another kind. The sides `bottom` of
+    all blocks form the symmetry plane ``back``, the sides `top` form ``front``. Patches of `grid` with these
     names are renamed.
 
     Raises InputError: blocks that are not planar, fewer than two heights, heights that do not increase.

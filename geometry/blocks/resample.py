@@ -105,9 +105,9 @@ def resample_patches(
 
 
 def patches_in_place(had: Boundary, has: Boundary) -> tuple[Patch, ...]:
-    """Return the patches of the boundary `had`, moved to `has`, which has the same edges but other nodes.
+    """Return the patches of the boundary `had` for `has`, a boundary with other nodes on the same sides.
 
-    Each end of a patch moves to the node at the nearest fraction of the side's length.
+    Each end of a patch moves to the node that is nearest in terms of relative arc length.
     """
 
     def moved(patch: Patch) -> Patch:

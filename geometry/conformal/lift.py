@@ -51,9 +51,9 @@ class Corner:
 class Lift:
     """The conformal map between the plane z around a body and a strip w = psi + i phi (see `lift_body`).
 
-    `centre` and `quarter` describe position, rotation and size of the body. `corners` are the maps that
-    straighten its corners. `pole` is the centroid of the wall after Joukowski's map and these maps. `phase`
-    puts the first wall node at phi = 0. Attributes are numbers or torch tensors.
+    `centre` and `quarter` are the parameters of Joukowski's map, which comes first. `corners` are the maps
+    that straighten corners of the body. `pole` is the centroid of the wall after all these maps. `phase` is
+    subtracted from phi, so that the first wall node is at 0. Attributes are numbers or torch tensors.
     """
 
     centre: Any

@@ -20,10 +20,9 @@ _ROUNDING = np.radians(0.1)  # turns of rounded coordinates
 def find_kinks(points: Floats, *, few: int = FEW) -> Indices:
     """Return the ascending indices of kinks of an open polygon `points` (n, 2); corners may be among them.
 
-    A turn of more than 2 degrees is a kink if it is 20 times as large as both neighbouring turns. In a
-    polygon of at most `few` points, two successive turns in opposite directions may both be at least half of
-    the largest turn. In this case all turns of more than 2 degrees are kinks, because a smooth curve through
-    these points would be a wave.
+    A turn of more than 2 degrees is a kink if it is 20 times as large as both neighbouring turns. A polygon
+    of at most `few` points may zigzag: two successive turns are in opposite directions, and both are at least
+    half of the largest turn. All its turns of more than 2 degrees are then kinks.
     """
     turn = turning(points)
     size = np.abs(turn)

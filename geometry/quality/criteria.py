@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Criteria:
-    """Gates and profiles (named sets of limits) by which grids pass or fail; at least one of them.
+    """Limits by which grids pass or fail; there must be a gate or a profile.
 
-    `gates` are conditions under which a grid fails. `profiles` are names in
+    `gates` are conditions under which a grid fails. `profiles` are names of sets of limits, the keys of
     `meshonet.geometry.quality.profiles.PROFILES`. With `leave_out`, grids that fail are not written.
     """
 

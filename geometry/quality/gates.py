@@ -67,7 +67,7 @@ class Gate:
 
 
 def beyond(value: float, compare: str, limit: float) -> bool:
-    """Return whether `value` is beyond `limit` by the comparison `compare`, such as ``>``; NaN always is."""
+    """Return whether the comparison `compare`, as ``value > limit``, is true, or `value` is NaN."""
     return bool(COMPARE[compare](value, limit)) or value != value
 
 

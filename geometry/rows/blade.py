@@ -147,7 +147,7 @@ class BladeSurface:
         return np.asarray(turned - mean - away * self.pitch)
 
     def lines(self, u: Floats) -> CubicTable:
-        """Return splines along the span at places `u` (m,): s, theta, h over the mean h of the profiles."""
+        """Return splines of s, theta, h through the profiles, at places `u` (m,) around the blade."""
         values = np.stack([profile.at(u) for profile in self.profiles])
         values[..., 1] += self._turns[:, None]
         return CubicTable(values, self.knots)
@@ -157,9 +157,9 @@ class BladeSurface:
         return self.crossings(self.lines(u.ravel()), h, len(h) if u.ndim == 1 else 1)
 
     def crossings(self, lines: CubicTable, h: Floats, levels: int = 1) -> Floats:
-        """Return s and theta (..., 2) of points at the heights `h` (...) on splines `lines` along the span.
+        """Return s and theta (..., 2) at the heights `h` (...) on m splines, a result of the method `lines`.
 
-        `h` has one height for each spline on the first level, then on the second level, up to `levels`.
+        Flattened, `h` is (levels, m): on each level, there is a height for each spline.
         """
         out = np.empty((*h.shape, 2))
         spline_crossings(

@@ -40,10 +40,10 @@ def cells_of_wake(
 ) -> int:
     """Return the number of cells along the wake of a C grid with `ni` nodes along xi.
 
-    If `nodes_wanted` is given, it is the number of nodes on the wake. Otherwise cells that grow by 13 % from
-    `first` fill `length`, but there are at least 20 and at most 23 % of all cells along xi. The number of
-    cells is rounded to a multiple of a step: the first of `steps` that is at most a quarter of it. Raises
-    InputError: too few nodes are left for the wall.
+    A given `nodes_wanted` is the number of nodes on the wake. Otherwise cells grow by 13.5 % from the length
+    `first` until they fill `length`; 20 % to 23 % of all cells along xi are on each side of the wake. This
+    number of cells is rounded to a multiple of one of `steps`. Raises InputError if too few nodes are left
+    for the wall.
     """
     if nodes_wanted is not None:
         cells = nodes_wanted - 1

@@ -17,9 +17,9 @@ def turned_alike(
 ) -> tuple[list[int], list[int], tuple[int, int] | None]:
     """Return which patches to reverse so that each connected part of a surface has one orientation.
 
-    The result is the part (a number) and the sign of each of `count` patches: -1 to be reversed, else 1. If
-    this is impossible, as on a Möbius strip, a pair of patches follows, else None. `patch` (4 m,) is the
-    patch of each half-edge. `half_edges` are the first and the last node of each half-edge.
+    The first list numbers the connected part of each of `count` patches. The second is -1 for each patch to
+    be reversed, else 1. The third result is None, or two patches that show that there is no orientation, as
+    on a Möbius strip. `patch` (4 m,) is the patch of each half-edge, `half_edges` its first and last nodes.
     """
     first, _ = half_edges
     edges = np.flatnonzero(twin > np.arange(len(twin)))

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 class Command(NamedTuple):
     """Name and summary of a command; its module is loaded when needed.
 
-    The module of ``solve-pde`` is ``solve_pde``, with a function ``solve_pde`` and tested ``EXAMPLES``.
+    For instance, ``solve-pde`` is the function ``solve_pde`` of the module ``solve_pde``.
     """
 
     name: str

@@ -99,9 +99,10 @@ class InputOptions(PrintOptions):
     def inputs(
         self, words: Sequence[str], *, grids: bool = False, suffixes: Sequence[str] = ()
     ) -> "Inputs":
-        """Return the inputs that `words` name: shapes, with `grids` grids, or files with these `suffixes`.
+        """Return the inputs that `words` name, such as files and folders.
 
-        Raises InputError if the shard is invalid, and as `Inputs`.
+        From folders, all files that can be read are taken; with `grids` only grids, with `suffixes` only
+        these extensions. Raises InputError if the shard is invalid, and as `Inputs`.
         """
         from meshonet.formats.inputs import Inputs
 

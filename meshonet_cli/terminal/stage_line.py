@@ -18,7 +18,7 @@ HELD = 1.0  # seconds to wait for a terminal that is held, at the most
 
 
 class StageLine:
-    """Thread that calls `draw` five times per second, from one second after its start; `clear` at its end."""
+    """Thread that, after one second, calls `draw` five times per second; `stop` calls `clear`."""
 
     def __init__(self, draw: Callable[[], None], clear: Callable[[], None]) -> None:
         self._draw, self._clear = draw, clear

@@ -54,7 +54,7 @@ class BodyMap:
         self._arcs = monotone_cubic(turns, body.arcs_near(table[:, 0]), even)[:, None, None]
 
     def points(self, places: Floats) -> Floats:
-        """Return points x, y, z (..., 3) at coordinates s, theta, zeta (see `BodyMap`) `places` (..., 3)."""
+        """Return points x, y, z (..., 3) at `places` (..., 3), coordinates s, theta, zeta (see `BodyMap`)."""
         s, theta, zeta = np.moveaxis(places, -1, 0)
         x, r = np.moveaxis(self.meridional(s.ravel(), zeta.ravel()).reshape(*s.shape, 2), -1, 0)
         r = np.maximum(r, 0.0)

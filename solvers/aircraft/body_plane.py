@@ -132,10 +132,10 @@ def _level_with_fin(columns: Sequence[ColumnPlan], plans: Sequence[ColumnPlan]) 
 
 
 def level_patches(space: BodyMap, plan: LevelPlan, holes: Sequence[Sequence[Hole]]) -> list[Floats]:
-    """Return the patches (ni, nj, 3), in s, theta, zeta (`BodyMap`), of one level around sections `holes`.
+    """Return the patches of one grid level around a body, as coordinates s, theta, zeta (see `BodyMap`).
 
-    First come the patches around wings, from nose to tail, then patches between wings. Two patches at nose
-    and two at tail follow: rows of cells, and a core that covers the tip.
+    Each patch is (ni, nj, 3). `holes` are the sections of wings, which are left open. Patches around wings
+    come first, from nose to tail; then patches between wings, two at the nose and two at the tail.
     """
     levels = _beside_fins([ColumnLevel.of(*each) for each in zip(plan.columns, holes, strict=True)])
     patches = [patch for level in levels for patch in level.patches()]

@@ -80,7 +80,7 @@ class CollarPlan:
 
 
 def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
-    """Return the means of both results of `corner_nodes` over `holes` (sections of a wing)."""
+    """Return both results of `corner_nodes`, averaged over `holes` (sections of wings) and rounded."""
     corners = [corner_nodes(hole.plane, hole.box, _CORNER) for hole in holes]
     edge, nose = (round(sum(each) / len(corners)) for each in zip(*corners, strict=True))
     return edge, nose
@@ -89,10 +89,10 @@ def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
 def planned_collar(
     holes: Sequence[Hole], corners: tuple[int, int], first: float, growth: float
 ) -> "tuple[CollarPlan, list[CollarLevel]]":
-    """Return the plan for the collars (cells around sections) of a wing, and the collar around each hole.
+    """Return numbers of cells for the collars (cells around sections) of a wing, and each section's collar.
 
-    `holes` are the sections of the wing from the root on. `corners` is the result of `corner_nodes`. There
-    are as few rows of cells on both sides of the wing as growth permits.
+    `holes` are the sections of the wing from the root on. `corners` is a result of `planned_corners`. Numbers
+    of cells are as small as growth permits.
     """
     edge, nose = corners
     plan = CollarPlan(edge, nose, 4, FEWEST, FEWEST, first)

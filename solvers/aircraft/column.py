@@ -116,7 +116,7 @@ class ColumnLevel:
 
     @classmethod
     def of(cls, plan: ColumnPlan, holes: Sequence[Hole]) -> ColumnLevel:
-        """Return the column around the sections `holes` of a wing, a fin, or a wing and then a fin."""
+        """Return the column around `holes`: the section of a wing or of a fin, or of a wing and of a fin."""
         levels = (CollarLevel.of(*each) for each in zip(plan.collars, holes, strict=True))
         return cls(plan, tuple(levels))
 

@@ -123,9 +123,9 @@ def map_around(body: Body, far: float) -> BodyMap:
 
 
 def points_above(space: BodyMap, foot: Floats, first: float) -> Floats:
-    """Return the points (n, 3) on normals of the body, at the distance `first` from it.
+    """Return the points (n, 3) at the distance `first` from the body, on its normals at the points `foot`.
 
-    `foot` (n, 3) are s, theta, zeta (`BodyMap`) of the points on the body where the normals begin.
+    `foot` (n, 3) are coordinates s, theta, zeta (see `BodyMap`) of points on the body.
     """
     if isinstance(space, LoftedMap):
         return np.asarray(space.points(foot) + first * space.normals(foot))

@@ -85,7 +85,7 @@ class WingLines:
         return np.stack([self.loft.line(k, z[:, k]) for k in range(z.shape[1])], axis=1)
 
     def with_first(self, parts: Floats, first: float) -> Floats:
-        """Return `parts` (k, n), fractions on n lines; the second points are `first` away from the root."""
+        """Return fractions `parts` (k, n) on n lines, changed so that the first cells have length `first`."""
         parts = parts.copy()
         for _ in range(_ROUNDS):
             root, second = self.points(parts[:2])
@@ -101,7 +101,7 @@ class WingLines:
 
     @property
     def length(self) -> float:
-        """Mean length of the lines."""
+        """Mean length of the lines from root to tip."""
         ends = self.points(np.array([[0.0], [1.0]]) + np.zeros(len(self.roots)))
         return float(norms(ends[1] - ends[0]).mean())
 

@@ -93,7 +93,7 @@ class BlockRequest(FirstCell):
 
     @property
     def layered(self) -> tuple[str, ...]:
-        """Names of the walls with layers; if there are none, `Domain.layered_loops` have layers."""
+        """Names of the walls with layers; if empty, the loops `Domain.layered_loops` have layers."""
         return self.by_wall or self.walls
 
     @property

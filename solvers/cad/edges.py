@@ -34,7 +34,7 @@ class EdgeNodes:
 
 @dataclass(frozen=True, eq=False)
 class EdgeLaw:
-    """Node distribution of an edge: `cells` (n,) is the number of cells up to the parameters `parts` (n,)."""
+    """Node distribution of an edge: ``cells[k]`` cells lie between its start and parameter ``parts[k]``."""
 
     parts: Floats
     cells: Floats

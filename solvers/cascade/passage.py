@@ -102,9 +102,8 @@ class Passage:
     def domain(self, inlet: float, outlet: float) -> Domain:
         """Return the domain of the blocks between the blade, the inlet and the outlet.
 
-        Its loops are the blade (or its layers), one rectangle upstream, one downstream, and one around all.
-        The blocks end at one side of each rectangle. Along the pitch, in pitches from the centre, this side
-        extends from `inlet` - 1 to `inlet` upstream, and from `outlet` - 1 to `outlet` downstream.
+        `inlet` and `outlet` are positions along the pitch, in pitches from `centre`. At the inlet, the blocks
+        extend from `inlet` - 1 to `inlet`; at the outlet, from `outlet` - 1 to `outlet`.
         """
         pitch = abs(self.period)
         x, far = (self.inlet, self.outlet), (self.inlet - pitch, self.outlet + pitch)

@@ -59,10 +59,9 @@ class Panels(NamedTuple):
 def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> Panels:
     """Return panels that cover the levels `first` to `last` - 1 of `eta`; none if they would not save work.
 
-    `eta` (nj,) ascends from 0 at the wall to 1. In the coordinate psi across the strip, `height` is the
-    distance from wall to far field, and `spread` the variation of psi on the wall. The map to the plane is
-    singular only at the wall. On a panel as long as its distance from the wall, `NODES` points therefore have
-    an error of (3 + sqrt(8))^-NODES = 6e-13.
+    `eta` (nj,) ascends from 0 at the wall to 1 at the far field. `height` is the width of the strip, in the
+    coordinate psi across it; psi of the wall varies by `spread`. A panel is at most as long as its distance
+    from the wall, so that the error of its `NODES` points is (3 + sqrt(8))^-NODES = 6e-13.
     """
     ends: list[int] = []
     points, matrices = [np.empty(0)], [np.empty((NODES, 0))]

@@ -110,7 +110,7 @@ class Follow:
         return affine(old[at], there[at], turns)
 
     def along_sides(self, move: Floats, there: Floats) -> Floats:
-        """Make `move` (n, d) tangential to sliding sides that are flat, in old positions and in `there`."""
+        """Make displacements `move` (n, d) tangential to sliding sides that are flat, and return them."""
         for piece in self.sources.sliding:
             normal = normal_of(self.table, piece, there)
             if normal is not None:

@@ -61,8 +61,8 @@ class DeformationDerivative:
     def transposed(self, pulls: Floats | Sequence[Floats]) -> Lines:
         """Return the derivative (n, 2) of a functional with respect to the nodes of each moved wall.
 
-        `pulls` has an array (ni, nj, 2) for each block: the derivative of the functional by all nodes as
-        independent variables. A closed wall repeats its first node; its last entry is then 0.
+        `pulls` has an array (ni, nj, 2) for each block: the derivative of the functional with respect to the
+        nodes, as if all moved independently. A closed wall repeats its first node, with the derivative 0.
         """
         arrays = [pulls] if isinstance(pulls, np.ndarray) else list(pulls)
         if [a.shape[:2] for a in arrays] != [block.counts for block in self.grid.blocks]:

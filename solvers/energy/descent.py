@@ -34,10 +34,10 @@ def descend(
 ) -> tuple[int, bool]:  # fmt: skip
     """Minimise the functional from planar `nodes` (ni, nj, 2), in place; folded cells are repaired first.
 
-    Returns the number of iterations, and whether no cell is folded. `still` is the `tol` of
-    `variational.solve`. `most` is the greatest number of iterations; after `first` iterations, only a value
-    above `HARD` lets them continue. If `periodic`, the grid is around a body: the last row repeats the first,
-    and both move. `stiffness`, a result of `stiffness_of`, preconditions smooth displacements.
+    Returns the number of iterations, and whether no cell is folded. `still` is the tolerance `tol` of
+    `variational.solve`. At most `most` iterations are made; they end after `first` iterations unless the
+    functional is above `HARD`. If `periodic`, the grid is around a body, and its last row repeats the first.
+    `stiffness`, a result of `stiffness_of`, is used as a preconditioner.
     """
     ni, nj = nodes.shape[:2]
     if min(ni, nj) < 3:

@@ -39,15 +39,15 @@ class Slides:
         return cls(np.empty(0, dtype=np.intp), np.empty((0, 3, 3)))
 
     def among(self, nodes: Indices) -> "Slides":
-        """Return the sliding nodes that are in sorted `nodes` (m,), numbered by their positions there."""
+        """Return those sliding nodes that are in sorted `nodes` (m,); their indices are positions in it."""
         place = np.minimum(np.searchsorted(nodes, self.nodes), len(nodes) - 1)
         some = nodes[place] == self.nodes
         return Slides(place[some], self.projections[some])
 
     def kept(self, before: Floats, after: Floats, moves: Bools) -> Floats:
-        """Return the displaced nodes `after` (n, 3), with sliding nodes moved back to their planes and lines.
+        """Return the displaced nodes `after` (n, 3), with sliding nodes projected to their planes and lines.
 
-        Planes and lines pass through the nodes `before`. Nodes outside the mask `moves` are not displaced.
+        `before` (n, 3) are the nodes before the displacement; nodes outside the mask `moves` stay there.
         """
         nodes, at = after.copy(), self.nodes
         nodes[at] = before[at] + (self.projections * (after[at] - before[at])[:, None]).sum(axis=2)
@@ -114,7 +114,7 @@ class HexProblem:
         return smallest
 
     def open(self) -> float:
-        """Open nearly flat cells of a mesh without folded cells; return the smallest Jacobian."""
+        """Make nearly flat cells thicker, in a mesh without folded cells; return the smallest Jacobian."""
         smallest = 0.0
         for weights, most in zip((UNFOLDING, *OPENING), OPENED, strict=True):
             smallest = self.run(weights, most)[0]

@@ -20,8 +20,8 @@ def unfold(
 ) -> tuple[bool, int]:  # fmt: skip
     """Untangle planar `nodes` (ni, nj, 2) in place; return whether no cell is folded, and the iterations.
 
-    Jacobians are regularised by ε, which starts at the area of a cell and decreases with the worst Jacobian,
-    at least by half in each step. `periodic` and `aspect` are as in `Descent`.
+    Jacobians are regularised by a positive number, which is at least halved after each minimisation. A
+    minimisation has up to `iterations` iterations. `periodic` and `aspect` are as in `Descent`.
     """
     descent = Descent(nodes, weights, periodic, aspect)
     cell = _cell_area(nodes)

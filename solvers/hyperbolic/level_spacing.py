@@ -48,7 +48,7 @@ def fastest(nodes: Floats) -> Floats:
 
 
 def even_shares(nodes: Floats, steps: Floats, rate: float, constant: int) -> Floats:
-    """Return weights (n,) for `level_steps` with which the greatest growth is the same at all levels.
+    """Return weights (n,) for `level_steps` that make the greatest growth ratio equal at all levels.
 
     Parameters
     ----------

@@ -37,10 +37,10 @@ def infer_many(
 
     `model` is the name of a shipped model, the path of a ``.safetensors`` file, or ``base`` for the conformal
     solver; None is the default of the topology. `polish`: see `operator.Operator.solve`. `device` is where
-    torch computes the grids; on a device, polish ``auto`` means 3 Picard steps for airfoil operators, none
-    for others. With `fallback`, a grid whose expected error is too large (see `confidence`) is replaced by
-    that of the method that the network imitates. Raises InputError if there is no such model or device, or
-    if a boundary does not suit the model.
+    torch computes the grids; ``auto`` polish there is 3 Picard steps for airfoil operators, and off for other
+    models. With `fallback`, a grid whose expected error is too large (see `confidence`) is replaced by one of
+    the method that the network imitates. Raises InputError if there is no such model or device, or if a
+    boundary does not suit the model.
     """
     named = None if model is None else load(model)
     solutions: dict[int, Solution] = {}
@@ -91,7 +91,7 @@ def _solved(boundary: Boundary, goal: Goal) -> Solution:
 
 
 def grid_of_body(boundary: Boundary, why: str) -> Solution | None:
-    """Return the grid of a compact body by the model `hole-o`, noting `why`; None if it has folded cells."""
+    """Return the grid of a compact body by the model ``hole-o``, with a note; None if cells are folded."""
     from meshonet.solvers.algebraic.resample.grids import thinned
     from meshonet.solvers.neural.quad.encoding import LATENT
     from meshonet.solvers.neural.quad.o_grids import compact

@@ -219,9 +219,9 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
     cell_size : float, optional
         Edge length of cells, instead of `cells`.
     walls : tuple of str, optional
-        Names of the walls with layers. If none are given: in a four-sided domain south, north and sides
-        called wall; in a multi-block domain all holes; without holes all sides, if one of them has a name
-        such as ``inlet``. Sides with such names have no layers.
+        Names of the walls with layers. If none are given, south, north and sides called wall have layers in
+        a four-sided domain. In a multi-block domain, all holes have layers. If it has no holes, but sides
+        with names such as ``inlet``, all its other sides have layers.
     pitch : tuple of 2 float, optional
         Displacement vector from one blade of a cascade to the next.
     inlet, outlet : float, optional

@@ -66,18 +66,14 @@ class Chords:
 
     @cached_property
     def counts(self) -> Indices:
-        """Number of cells (chords,) along the edges of each chord."""
+        """Number of cells (chords,) along the edges of each chord (set of opposite edges of blocks)."""
         cells = np.empty(self.count, dtype=np.intp)
         cells[self.chord] = [len(edge) - 1 for edge in self.edges]
         return cells
 
     @cached_property
     def multiple(self) -> Indices:
-        """Number (chords,) that divides the cell count of each chord, so that a layout stays symmetric.
-
-        The number is 1, with two exceptions. If a chord goes around a ring, it is the number of mirrors. If a
-        mirror contains a corner in the middle of a wall edge of the chord, it is 2.
-        """
+        """Divisor (chords,) of the cell count of each chord (set of opposite edges) in a symmetric layout."""
         multiple = np.ones(self.count, dtype=np.intp)
         for k, edge in enumerate(self.edges):
             own = sum(np.array_equal(distinct(to[edge]), distinct(edge)) for to in self.images)
@@ -91,7 +87,7 @@ class Chords:
 
     @cached_property
     def lengths(self) -> Floats:
-        """Lengths (e,) of the edges, as polygons through their nodes."""
+        """Lengths (e,) of the block edges, with straight lines between nodes."""
         nodes = self.layout.mesh.nodes
         return np.array([np.hypot(*np.diff(nodes[edge], axis=0).T).sum() for edge in self.edges])
 

@@ -25,7 +25,7 @@ class Near:
     square: Floats  # (p, m) squared cosine of the angle between the edge and the normal at this point
 
     def length(self, sizes: "SizeMetric") -> Floats:
-        """Return the target lengths (m,) of the edges: the least that any part of `sizes` requires."""
+        """Return the target lengths (m,) of the edges: the smallest lengths that parts of `sizes` require."""
         rise = sizes.grading * self.distance
         high = np.minimum(sizes.across[self.point] + rise, sizes.largest)
         wide = np.minimum(sizes.along[self.point] + rise, sizes.largest)

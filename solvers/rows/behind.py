@@ -23,11 +23,10 @@ _KEPT = 0.4  # smallest accepted ratio of a cell's smallest Jacobian after the m
 
 
 def even_behind(sections: Sequence[KeySection], columns: Indices) -> tuple[KeySection, ...]:
-    """Return the sections, at `key_heights`, with nodes behind the blade on smooth lines along the span.
+    """Return the sections with nodes behind the blade moved to smooth lines along the span.
 
-    On these lines, positions along the passage (`SectionPlane.shares`) and theta relative to the trailing
-    edge are polynomials of the height. The nodes `columns` (k, m) of layers stay, and nodes near them move
-    less. All nodes move less if cells would get too small.
+    Sections are at `key_heights`. The nodes `columns` (k, m) in layers stay, and nodes near them move less.
+    All nodes move less, or not at all, if cells would get too small.
     """
     mesh = sections[0].layout.mesh
     values = []

@@ -22,9 +22,9 @@ def layer_columns(layout: Layout) -> Indices:
 
 
 def straight_near(lines: Floats, away: Floats) -> Floats:
-    """Return the columns `lines` (k, m, 2), straightened near corners, where marched columns are curved.
+    """Return grid lines (k, m, 2) through layers, straightened near corners of the wall.
 
-    `away` (k,) is the distance of each column from the nearest corner.
+    `away` (k,) is the distance of each line from the nearest corner.
     """
     thickness = norms(np.diff(lines, axis=1)).sum(axis=1).max()
     t = np.clip((_MARCHED - away / thickness) / (_MARCHED - _STRAIGHT), 0.0, 1.0)

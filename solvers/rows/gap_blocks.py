@@ -44,8 +44,8 @@ def gap_ends(
 
     Parameters
     ----------
-    beside : function of the height. It returns s, theta, h (k, 2, 3) (see `Channel`) of the blade's nodes,
-        clockwise, and of the nodes next to them.
+    beside : function of the height. It returns coordinates s, theta, h (k, 2, 3), as defined by `Channel`, of
+        the blade's k nodes, clockwise, and of the next nodes outwards.
     lead : index of the node at the leading edge.
     zone : the gap.
     first, growth : height of the cells inside the outline, and largest ratio of neighbouring cells.

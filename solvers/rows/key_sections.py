@@ -36,7 +36,7 @@ STEEP, MARGIN = 3.0, 0.93
 
 @dataclass(frozen=True, eq=False)
 class SectionPlan:
-    """Data that all key sections of a row share."""
+    """Data that all key sections of a blade row share; the grid is interpolated between these sections."""
 
     growth: float  # largest ratio of neighbouring cells
     columns: Indices  # (k, rows + 1) nodes of the layers, clockwise, each column from the blade outwards
@@ -68,7 +68,7 @@ class LayerColumns:
 
     @classmethod
     def of(cls, plane: SectionPlane, places: Floats) -> "LayerColumns":
-        """Return the columns of nodes that begin on the blade at `places` u (k,), 0 to 1 around it."""
+        """Return the lines of nodes that begin on the blade at `places` (k,), from 0 to 1 around it."""
         front = plane.front_arcs(places)
         lines, walls = plane.cascade.ring.columns(front)
         lines = straight_near(lines, plane.from_corners(walls))
@@ -148,9 +148,10 @@ class NextSections:
         self._problem = _problem(plan, section.plane, section.layout.mesh)
 
     def of(self, before: KeySection, plane: SectionPlane, columns: LayerColumns | None = None) -> KeySection:
-        """Return the section in `plane`, made from the section `before`; None computes new `columns`.
+        """Return the section in `plane`, made from the neighbouring section `before`.
 
-        Raises NoValidGridError if cells stay folded.
+        `columns` are the lines of nodes through the layers; None: they are computed. Raises NoValidGridError
+        if cells stay folded.
         """
         plan = self.plan
         columns = columns or LayerColumns.of(plane, plan.places.at(plane.height))

@@ -34,7 +34,7 @@ LEAN = 12.0
 
 @dataclass(frozen=True, eq=False)
 class KeyTables:
-    """Key sections of a row, at `key_heights` from hub to casing, between which nodes are interpolated."""
+    """Sections of a blade row at `key_heights` from hub to casing; between them, nodes are interpolated."""
 
     plan: SectionPlan
     sections: tuple[KeySection, ...]

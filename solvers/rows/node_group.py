@@ -32,11 +32,11 @@ class NodeGroup:
 
     @property
     def columns(self) -> int:
-        """Number of columns of layers; the nodes of each are consecutive."""
+        """Number of lines of nodes from the blade through the layers; nodes on a line are consecutive."""
         return self.around.coefficients.shape[1] if self.around else 0
 
     def arcs(self) -> list[LineArcs]:
-        """Return, for each zone of the span (blade and gaps), the arc lengths of the lines along it."""
+        """Return arc lengths along the lines from hub to casing, for each zone (the blade, or a gap)."""
         out = []
         for zone in self.zones:
             at = zone.low + (zone.high - zone.low) * key_heights(_IN_GAP if zone.gap else SAMPLES)
@@ -46,7 +46,7 @@ class NodeGroup:
         return out
 
     def values(self, arcs: Sequence[LineArcs], spacings: Sequence[Spacing]) -> Floats:
-        """Return s, theta, h (levels, m, 3) of the nodes; `arcs` and `spacings` have one entry per zone."""
+        """Return the coordinates s, theta, h (see `Channel`) of the nodes, (levels, m, 3)."""
         values = self.at(self._heights(arcs, spacings))
         self._exact_along_span(values)
         if self.around:
@@ -105,8 +105,8 @@ class NodeGroup:
     def store(self, values: Floats, rises: Sequence[Rise], space: Floats) -> None:
         """Write x, y, z of the group's nodes into the array `space` (levels, n, 3) of all nodes of the row.
 
-        `values` (levels, m, 3) are the coordinates s, theta, h (see `Channel`) of the nodes. Nodes in layers
-        are displaced by `rises`.
+        `values` (levels, m, 3) are the nodes' coordinates s, theta, h (see `Channel`). `rises` are small
+        displacements of nodes in layers near the ends of the blade.
         """
         self.row.channel.store(values, self.ids, space)
         if rises:

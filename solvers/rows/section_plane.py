@@ -88,7 +88,7 @@ class SectionPlane:
 
     @cached_property
     def edges(self) -> Floats:
-        """Coordinates m' and theta (2, 2) of the leading edge and of the trailing edge."""
+        """Coordinates m' (see `MeridionalMap`) and theta of the leading and of the trailing edge, (2, 2)."""
         return self.cascade.blade.at(self.wall_arcs(np.array([0.0, 0.5])))
 
     @property
@@ -104,9 +104,10 @@ class SectionPlane:
         return slope * (self.map.length - float(self.edges[1, 0]))
 
     def ending(self, near: tuple[float, float], thickest: float) -> Self:
-        """Return the section; beyond `near` pitches upstream and downstream, its rows of cells are straight.
+        """Return the section with straight rows of cells at inlet and outlet.
 
-        The conformal map has its centre midway between the places u = `thickest` and u = 1 - `thickest`.
+        The rows begin at the distances `near` (in pitches) before and behind the blade with its layers. The
+        blade is thickest at the place `thickest`, from 0 at the leading to 0.5 at the trailing edge.
         """
         one, other = self._opposite(np.array([thickest, 1.0 - thickest]))
         centre = complex(0.5 * (one + other))
@@ -118,7 +119,7 @@ class SectionPlane:
         return self.places[list(self.cascade.blade.corners)]
 
     def from_corners(self, arcs: Floats) -> Floats:
-        """Return the distances (n,) from arc lengths (n,) to the nearest corner; infinite without corners."""
+        """Return the distances (n,) along the blade from `arcs` (n,) to its nearest corner, or infinity."""
         off = wrapped((arcs - self.wall_arcs(self.corners)[:, None]) / self._walls[-1])
         return np.asarray(self._walls[-1] * np.abs(off).min(axis=0, initial=np.inf))
 

@@ -31,7 +31,7 @@ _LEAST = 0.35  # smallest ratio of a step between neighbouring nodes to the same
 
 @dataclass(frozen=True, eq=False)
 class SpanPlaces:
-    """Places u (see `SectionPlane`) of nodes clockwise around a blade, from hub to casing."""
+    """Positions u (see `SectionPlane`) of k nodes, clockwise around a blade, as functions of the height."""
 
     ends: tuple[Floats, Floats]  # places u (k,) at the hub and at the casing
     gaps: tuple[bool, bool]  # whether the blade ends there in a gap; then each node at u has one at 1 - u
@@ -66,7 +66,7 @@ class SpanPlaces:
         return cls(ends, gaps)
 
     def at(self, height: float) -> Floats:
-        """Return the places (k,) at a height from 0 to 1."""
+        """Return the positions u (k,) of the nodes at a height from 0 at the hub to 1 at the casing."""
         start, end = self.ends
         return np.asarray(np.mod(start + height * wrapped(end - start), 1.0))
 

@@ -81,9 +81,9 @@ def smooth_arcs(lengths: Floats, ends: tuple[Floats | float, Floats | float | No
 def smooth_cells(
     length: Floats | float, ends: tuple[Floats | float, Floats | float | None], growth: float, least: int
 ) -> int:
-    """Return the least number of cells, at least `least`, that `smooth_arcs` needs for ratios up to `growth`.
+    """Return how many cells `smooth_arcs` needs for ratios of at most `growth`; `least` or more.
 
-    `length` and `ends` are numbers, or (n,) for n lines.
+    `length` and the cell lengths `ends` are numbers, or (n,) for n lines.
     """
     lengths = np.atleast_1d(length)
     for cells in range(max(least, 4), MOST_CELLS):

@@ -25,7 +25,7 @@ _AT_ONCE = 1 << 16  # number of nodes that are computed together, so that they f
 
 @dataclass(frozen=True, eq=False)
 class RowNodes:
-    """Nodes on all levels along the span: x, y, z, and s, theta, h (`Channel`) on and next to the blade."""
+    """Nodes of a blade row: x, y, z of all, and s, theta, h (see `Channel`) on and next to the blade."""
 
     space: Floats  # (levels, n, 3) x, y, z
     beside: Floats  # (levels, k, 2, 3) s, theta, h of the blade's nodes, clockwise, and of those next to them

@@ -22,15 +22,15 @@ _RATIO = 2.0
 def whole_section(
     plane: SectionPlane, beyond: Layout, layers: int, largest: float, longest: Mapping[int, float]
 ) -> Layout:  # fmt: skip
-    """Return the layout of a section: layers, the blocks `beyond` them, rows to inlet and outlet.
+    """Return the layout of a section of a blade row, with layers and with rows to inlet and outlet.
 
     Parameters
     ----------
-    beyond : layout of the blocks beyond the layers, in m' (`MeridionalMap`) and theta.
+    beyond : layout of the blocks beyond the layers, in m' (see `MeridionalMap`) and theta.
     layers : number of layers.
     largest : length of the longest cells.
-    longest : greatest lengths, in any section, of the rows to inlet and outlet, by loop index; they determine
-        numbers of cells.
+    longest : greatest length in all sections of the rows to inlet and to outlet, by index of their loop; it
+        determines the number of cells.
     """
     cascade = plane.cascade
     mesh = beyond.mesh

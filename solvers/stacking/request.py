@@ -32,8 +32,8 @@ class StackRequest(VolumeRequest):
     first_cell : float, optional
         First-cell height at every wall node; by default 1e-3.
     y_plus, reynolds, chord_fraction : float, optional
-        First-cell height as y+ on a turbulent flat plate, with the Reynolds number of the longest chord or of
-        the widest section of a duct.
+        First-cell height as y+ on a turbulent flat plate, at this fraction of its length. The Reynolds number
+        is that of the longest chord, or of the widest section of a duct.
     layers : int, optional
         Number of nodes along each line from the wall, with the wall node; by default as `growth` requires.
     growth : float, optional

@@ -16,10 +16,10 @@ from meshonet.solvers.volumes.interpolate import Laws, Spline, interpolate, unif
 
 
 def refine_volume(coarse: Floats, coarse_faces: SixFaces, faces: SixFaces, laws: Laws) -> Floats:
-    """Return nodes (3, ni, nj, nk) inside `faces` at the parameters `laws` (`uniform_laws`), by splines.
+    """Return nodes (3, ni, nj, nk) inside `faces`, by splines through a coarse grid.
 
-    The splines go through the nodes `coarse` (3, mi, mj, mk), at equal steps inside `coarse_faces`. All four
-    edges of a direction must have equal parameters.
+    `coarse` (3, mi, mj, mk) are the nodes of the coarse grid inside `coarse_faces`. `laws` are the parameters
+    of the fine nodes (see `uniform_laws`); all four edges of a direction must have equal parameters.
     """
     start = interpolate(coarse_faces, uniform_laws(coarse_faces.counts))
     spline = spline_of(coarse - np.moveaxis(start, -1, 0), tuple(law[0] for law in laws))

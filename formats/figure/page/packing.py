@@ -25,8 +25,8 @@ class Packed:
 def packed(numbers: NDArray[np.integer]) -> Packed:
     """Return integers (n,) below 2^50 in magnitude as compressed text, which ``unpack.js`` reads.
 
-    The differences of successive integers are mapped to unsigned integers (0, -1, 1, -2 ... to 0, 1, 2, 3
-    ...). Their bytes, grouped by significance, are compressed by deflate and encoded as Base64.
+    Differences of successive integers become unsigned integers: 0, -1, 1, -2 become 0, 1, 2, 3, and so on.
+    Bytes of equal significance are stored together, compressed by deflate and encoded as Base64.
 
     >>> packed(np.array([5, 6, 7])).width
     1

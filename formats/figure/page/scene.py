@@ -57,9 +57,9 @@ class Lattice:
 class SceneSheet:
     """A drawn layer of cells of a lattice (a block, or a part of a block of a large volume).
 
-    `axis` is the direction normal to the layer (None: the lattice is a layer). `node` is the layer's index
-    along `axis`. `ranges` are first and last node along each other direction. `across` (i, j or k) and `at`
-    are direction and index in the whole block, if the lattice is a part of a block.
+    The layer has the index `node` along the direction `axis`; if `axis` is None, it is the whole lattice.
+    `ranges` are its first and last nodes along the other directions. In a part of a block, `across` (i, j or
+    k) and `at` are the direction and the index of the layer in the whole block.
     """
 
     lattice: int

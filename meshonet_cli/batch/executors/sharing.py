@@ -36,7 +36,7 @@ def shared(
 ) -> Iterator[Pair]:  # fmt: skip
     """Yield each member in `todo` with its result; `work` runs on the workers of `engine`.
 
-    Members keep the order of `todo`. A task has `size` members; if `size` is 1, fast members share tasks.
+    Members keep the order of `todo`. A task consists of `size` members, or of several fast ones if it is 1.
     """
     timed, grows, most = _Timed(work), size == 1, size
 

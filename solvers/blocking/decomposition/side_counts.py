@@ -126,7 +126,7 @@ def _conflict(names: tuple[str, ...], given: Mapping[str, int], sums: Sums, leas
 
 
 def nearer(chords: Chords, counts: Indices, multiple: int = 1) -> Indices:
-    """Return `counts`, scaled so that a side gets about `multiple` times its count, if one is prescribed."""
+    """Return `counts` scaled so that sides with a prescribed count get about `multiple` times this count."""
     counts = counts.copy()
     for name, row in sums_of(chords).items():
         total = sum(times * counts[chord] for chord, times in row.items())

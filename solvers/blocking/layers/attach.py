@@ -31,9 +31,9 @@ class Rows:
 
 
 def attach(layout: Layout, domain: Domain, rows: Sequence[Rows]) -> Layout:
-    """Return the layout extended by `rows` of blocks: each block side on a loop with rows gets a new block.
+    """Return the layout with new blocks outside some boundary loops, one at each block side on these loops.
 
-    `domain` is the domain of the result: the loops with rows are replaced by loops at the ends of the rows.
+    `rows` are the grid lines through the new blocks, for each loop. `domain` is the domain of the result.
     """
     mesh = layout.mesh
     nodes, places = [mesh.nodes], [replace(mesh.places, loop=mesh.places.loop.copy())]

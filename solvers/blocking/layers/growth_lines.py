@@ -83,7 +83,7 @@ class GrowthLines:
         return type(self)(self.nodes[which], self.limit[which], self.offset[which], self.begins[which])
 
     def growth(self, z: Complexes) -> Floats:
-        """Return log(second / first length) of k pairs of edges, plus `offset`, for complex nodes `z`."""
+        """Return logarithms (k,) of the pairs' length ratios, plus `offset`, for complex nodes `z` (n,)."""
         before, after = self.edges(z)
         return np.asarray(log(modulus(after) / modulus(before)) + self.offset)
 

@@ -53,7 +53,7 @@ class RowSizes:
 
     @classmethod
     def of(cls, domain: Domain, number: int, stretches: Sequence[Stretch], settings: LayerSettings) -> Self:
-        """Return the sizes along loop `number`, whose parts `stretches` (by default all) have layers."""
+        """Return the sizes along loop `number`; layers are on its parts `stretches`, or on all if empty."""
         loop = domain.loops[number]
         arcs, length = sizes_by_bend(loop, loop.length / COLUMNS, TURN)
         gap = _gaps(domain, number, arcs)
@@ -83,12 +83,12 @@ class RowSizes:
         return np.interp(arcs, self.arcs, self.thickness(scale, settings), period=self.loop.length)
 
     def thickness_behind(self, away: Floats, scale: float, settings: LayerSettings) -> Floats:
-        """Return the thickness (k,) of a wake's layers at the distances `away` (k,) from the sharp edge."""
+        """Return the thickness (k,) of layers on a wake at the distances `away` (k,) from the sharp edge."""
         edge = self.thickness_at(self.loop.corner_arcs[:1], scale, settings)
         return edge + SPREAD * away
 
     def rows(self, scale: float, settings: LayerSettings) -> int:
-        """Return the approximate number of layers at points with the first-cell height of `settings`."""
+        """Return the approximate number of layers where the first-cell height is that of `settings`."""
         on = self.on & (self.first == settings.first)
         return settings.rows(float(self.thickness(scale, settings)[on if on.any() else self.on].max()))
 

@@ -98,7 +98,7 @@ class WallLayers:
 
     @cached_property
     def of_rows(self) -> tuple[LayerSettings, ...]:
-        """Settings of the layers in each row of blocks: first around `sheets`, then along `stretches`."""
+        """Settings of the layers in rows of blocks: for each of the loops `sheets`, then of `stretches`."""
         loops = self.domain.loops
         names = [loops[k].names for k in self.sheets] + [s.names(loops[s.loop]) for s in self.stretches]
         return tuple(map(self.settings.at, names))
@@ -223,16 +223,16 @@ def _sizes(domain: Domain, number: int) -> tuple[float, float]:
 
 @dataclass(frozen=True, eq=False)
 class Counts:
-    """Numbers of cells along the chords (rows of blocks) of a layout, and factors to the final numbers.
+    """Numbers of cells along the chords (sets of opposite block edges) of a layout, and factors on them.
 
     Parameters
     ----------
-    coarse : (chords,) counts in the first optimisation: the final counts divided by `stride` and `times`.
-    stride : counts of the second optimisation divided by counts of the first; 1 without a second.
-    times : final counts divided by counts of the last optimisation.
-    scale : factor by which the cell lengths along walls are multiplied.
+    coarse : (chords,) numbers of cells in the first optimisation.
+    stride : factor from the first to the second optimisation; 1 without a second.
+    times : factor from the last optimisation to the final grid.
+    scale : factor on the cell lengths along walls.
     metric : target cell sizes.
-    layers : (rows,) factors that correct the number of layers of each row, from the last optimisations.
+    layers : (rows,) correction of the number of layers in each row of blocks.
     """
 
     coarse: Indices

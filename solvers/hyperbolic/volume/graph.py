@@ -18,7 +18,7 @@ _WIDTH, _FALL = 4, 0.35  # rings of nodes around irregular ones that are smoothe
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """A neighbour of a node, real or ghost, at own * x(node) + sign * x(node with index `base`) + shift."""
+    """A neighbour of a node, maybe a ghost, at the position own * x(node) + sign * x(base) + shift."""
 
     base: int
     own: float = 0.0

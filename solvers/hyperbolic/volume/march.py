@@ -167,7 +167,7 @@ def _with_growth(
 def march_levels(
     surface: Surface, graph: MarchGraph, nodes: Floats, steps: Floats, smoothing: Smoothing
 ) -> Floats:
-    """Return the levels (k, 3, n) of a march by `steps` (m,); if it fails, k is less than m + 1."""
+    """Return the levels (k, 3, n) of a march by `steps` (m,): m + 1 levels, or fewer if the march fails."""
     levels = np.empty((len(steps) + 1, 3, len(nodes)))
     levels[0] = nodes[graph.order].T
     numbers = smoothing.numbers(0.5 * surface.size)

@@ -20,10 +20,9 @@ class Equations(Protocol):
         ...
 
     def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the solutions (batch, 2, ni, nj), and their smoothness weights (batch,).
+        """Return the solutions (batch, 2, ni, nj), and the weight (batch,) of smoothness in each, or 0.
 
-        The weights are 0 in equations without such a weight. Only the boundary nodes of `nodes` are used.
-        Raises MemberError if a grid has no solution.
+        Only the boundary nodes of `nodes` are used. Raises MemberError if a grid has no solution.
         """
         ...
 

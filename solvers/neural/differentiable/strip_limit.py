@@ -23,7 +23,7 @@ TOGETHER = 8  # members solved at once on a CPU, so that they fit in its cache
 
 
 def picard(c: Tensor) -> Tensor:
-    """Return Fourier modes `c` (batch, modes, LEVELS) of grids after a Picard step for Winslow's grid."""
+    """Return Fourier modes `c` (batch, modes, LEVELS) of grids after a Picard step of Winslow's equations."""
     return _stepped(c.mT).mT
 
 

@@ -61,9 +61,9 @@ def _first_of_strip(name: str, shape: tuple[int, ...], shapes: dict[str, tuple[i
 class QuadUNet(NamedParameters, UNet[Tensor]):
     """The U-Net from features of grids to displacements of their nodes, as a torch module.
 
-    `widths` has for each level, the finest first, the number of channels divided by 8. Each level has half as
-    many nodes per direction as the level before. `blocks` has the number of residual blocks of each level, on
-    the way down and again on the way up. With `around`, grids are O grids and features are periodic along xi.
+    `widths` has the number of channels of each level, divided by 8; the finest level comes first. Each level
+    has half as many nodes per direction as the level before. `blocks` has the number of residual blocks of
+    each level, equal on the way down and up. With `around`, O grids have features that are periodic along xi.
     """
 
     def __init__(self, widths: Sequence[int], blocks: Sequence[int], around: bool = False) -> None:

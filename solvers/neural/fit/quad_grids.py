@@ -22,9 +22,9 @@ from meshonet.solvers.neural.samples import Samples, gathered
 class Quads:
     """Training grids of m domains of unit size, as complex arrays (m, n, n).
 
-    `winslow` and `variational` are the target grids. `base` comes from transfinite grids by a few Picard
-    steps; `step` is the last of these steps. With `around`, the arrays (m, 65, n) are O grids mapped to
-    strips by a complex logarithm.
+    `winslow` and `variational` are the target grids. `base` are transfinite grids after a few Picard steps,
+    and `step` is the displacement in the last step. With `around`, the arrays (m, 65, n) are O grids mapped
+    to strips by a complex logarithm.
     """
 
     base: Tensor
@@ -46,10 +46,10 @@ class Quads:
 
 
 def quads_of(datasets: Iterable[Iterable[Grid]]) -> Quads:
-    """Return the domains that are both in a dataset of Winslow's grids and in one of variational grids.
+    """Return the domains for which `datasets` have a grid by ``winslow`` and a grid by ``variational``.
 
-    The first grid determines the method of a dataset. Raises InputError if one of the two methods is missing
-    or if there is a third one; see also `quads`.
+    The first grid determines the method of a dataset. Raises InputError if a method is missing or is none of
+    these, and as `quads`.
     """
     groups: dict[str, list[Grid]] = {}
     for dataset in datasets:

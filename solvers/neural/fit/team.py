@@ -25,9 +25,9 @@ class Team:
         return self.rank == 0
 
     def share(self, rows: Tensor) -> tuple[Tensor, float]:
-        """Return the part of a batch `rows` that this process computes, and its weight in the batch's mean.
+        """Return the rows of a batch that this process computes, and their weight in the processes' mean.
 
-        Every process must compute a step; a process without a part gets the first row, with weight 0.
+        A process without rows gets the first row of the batch, with weight 0, as all must compute a step.
         """
         own = rows[self.rank :: self.size]
         if len(own) == 0:

@@ -94,7 +94,7 @@ def answered(z: Any, unit: Any, network: Moves, shares: Moves | None, xp: Any, a
 
 
 def nearer(z: Any, unit: Any, xp: Any, around: bool = False) -> Any:
-    """Return grids `z` after Picard steps towards Winslow's solution; parameters as in `answered`."""
+    """Return complex grids `z` after Picard steps of Winslow's equations; for parameters, see `answered`."""
     sized, back = unit
     return z + times(approach(sized, xp, around, AFTER, harmonic=False)[0] - sized, back)
 

@@ -41,10 +41,10 @@ class BaseComplex:
 
     @cached_property
     def sides(self) -> tuple[Indices, Indices, Indices]:
-        """Edges along the sides of the blocks: south, north, west, east of each block.
+        """Edges along the south, north, west and east side of each block.
 
-        The first array (k,) has, side after side, the edge from each node to the next, and -1 at the end of a
-        side. The second (4 b,) has the start of each side in the first array, the third (4 b,) its chord.
+        The first array (k,) lists the edges of one side after another, with -1 after each side. The second
+        array (4 b,) has the index at which each side begins in the first, the third (4 b,) the side's chord.
         """
         lines = [line for block in self.blocks for line in (block[:, 0], block[:, -1], block[0], block[-1])]
         nodes = np.concatenate(lines)

@@ -31,7 +31,7 @@ class Frames:
 
 
 def cut_frames(field: CrossField) -> Frames:
-    """Return one direction of the cross in each triangle, continuous except at cuts that open the surface."""
+    """Return one of the cross field's four directions in each triangle, continuous except across cuts."""
     surface = field.surface
     turn, cut = surface_comb(surface.arrays, surface.size, field.quarters)
     keep = surface.on_wall.copy()
@@ -70,10 +70,10 @@ def _wedges(field: CrossField, cut: Bools) -> Indices:
 
 
 def frame_sizes(field: CrossField) -> Floats:
-    """Return lengths e^H (t,), one per triangle, with which the cross field is nearly free of curl; median 1.
+    """Return lengths e^H (t,), one per triangle, with which the cross field is nearly free of curl.
 
-    Vectors e^H (cos theta, sin theta) are free of curl if grad H is grad theta rotated by a quarter turn; H
-    satisfies this in the least-squares sense.
+    Vectors e^H (cos theta, sin theta) along the field are free of curl if grad H is grad theta rotated by a
+    quarter turn. H is the least-squares solution, for which the median length is 1.
     """
     surface = field.surface
     corner = angle(field.crosses)[surface.triangles] / 4.0

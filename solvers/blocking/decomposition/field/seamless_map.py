@@ -56,10 +56,10 @@ class SeamlessMap:
 
 
 def seamless_map(domain: Domain, count: int = 1500, seed: int = 0, fewer: bool = True) -> SeamlessMap:
-    """Return a seamless map of a domain that is triangulated with about `count` vertices.
+    """Return coordinates u, v on a triangulated domain, whose lines follow the walls (see `SeamlessMap`).
 
-    Some triangles may be folded in the map. If `fewer` is true, the number of singularities is reduced. The
-    triangulation depends on `seed`.
+    There are about `count` vertices; the triangulation depends on `seed`. Some triangles may be folded in the
+    map. If `fewer` is true, the number of singularities is reduced.
 
     Raises SolverError if the field or the map has no solution; InputError if triangulation is impossible.
     """

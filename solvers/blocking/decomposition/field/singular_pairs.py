@@ -29,7 +29,7 @@ _TURN = 2.0 * np.pi  # a full turn, radians
 def without_pairs(
     surface: Triangulation, laplacian: Laplacian, factor: Factor, crosses: Complexes
 ) -> Complexes:
-    """Return the crosses (n,) without those pairs of singular points whose removal lowers the energy.
+    """Return the crosses (n,), with pairs of singular points removed where this lowers the energy.
 
     `crosses` are exp(4 i theta) at the vertices; crosses at walls do not change. The free vertices of
     `laplacian` are the interior vertices; `factor` is its factored matrix. If no pair is removed, `crosses`

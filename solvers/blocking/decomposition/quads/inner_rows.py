@@ -30,10 +30,9 @@ def with_row(mesh: QuadMesh, path: Sequence[int], *, closed: bool = False, of_wa
     """Return the mesh with a row of quads inserted on the left of a path of nodes.
 
     The path goes from wall to wall or, if `closed`, from its last node back to the first. It may follow a
-    wall. The side of the row opposite to the path is called the front. New nodes are on the front or, if
-    `of_wall`, on the path. The new quads are the last ones of the mesh. The first two nodes of each quad
-    are on the path, its other two on the front. If a closed path begins at a corner with one quad, the row
-    crosses itself there, and the quad at this corner comes last.
+    wall. The far side of the row is called the front. The new nodes are on the front or, if `of_wall`, on the
+    path. The new quads are the last ones of the mesh; each has two nodes on the path, then two on the front.
+    If a closed path begins at a corner with one quad, the row crosses itself there, in the last new quad.
     """
     half, n, count = half_edges(mesh), len(mesh.nodes), len(path)
     new = list(range(n, n + count))

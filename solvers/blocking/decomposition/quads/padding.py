@@ -62,9 +62,9 @@ def pad(mesh: QuadMesh, loops: Sequence[int]) -> QuadMesh:
 
 
 def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
-    """Return the mesh with a row of quads added along a span (part of a loop) between corners with one quad.
+    """Return the mesh with a row of quads added along a part of a loop between two corners with one quad.
 
-    If the span starts and ends at the same corner, the row is closed. The new quads are as in `with_row`.
+    If both are the same corner, the row is closed. `with_row` describes the order of the new quads.
     """
     number, begin, end = span
     on, length = np.flatnonzero(mesh.places.loop == number), mesh.domain.loops[number].length

@@ -33,7 +33,7 @@ class Ports:
 
 
 def ports_of(seamless: SeamlessMap, joined: Indices) -> Ports:
-    """Return the `Ports` at corners and singular vertices of a map, then at the wall vertices `joined`."""
+    """Return the directions of lines from a map's corners, singular vertices and wall vertices `joined`."""
     cells, around = seamless.boundary_cells, seamless.valence.copy()
     around[: len(cells)] = cells
     corners = np.flatnonzero((seamless.corner_cells > 0) | ((cells != 2) & (cells > 0)))

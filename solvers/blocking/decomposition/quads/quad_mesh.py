@@ -152,7 +152,7 @@ def _along(nodes: _Nodes, side: Side) -> list[int]:
 
 
 def conforms(mesh: QuadMesh) -> bool:
-    """Return whether the mesh is manifold with all holes of its domain, and boundary nodes are on walls."""
+    """Return whether the mesh is manifold, has its domain's holes, and has boundary nodes only on walls."""
     quads, wall = mesh.quads, mesh.wall_nodes
     euler = len(wall) - len(mesh.edges) + len(quads)
     repeated = any((quads == np.roll(quads, k, axis=1)).any() for k in (1, 2))

@@ -67,7 +67,7 @@ class Trails:
         return piece, np.clip(part, 0.0, 1.0)
 
     def joined(self, others: "Trails") -> "Trails":
-        """Return these trails followed by the trails `others`."""
+        """Return these trails (lines in the map), followed by those of `others`."""
         names = [each.name for each in fields(self)]
         mine, theirs = ([getattr(trails, name) for name in names] for trails in (self, others))
         theirs[0] = theirs[0][1:] + self.first[-1]

@@ -61,11 +61,13 @@ def usual_size(area: float, count: int) -> float:
 def wall_sizes(domain: Domain, count: int, finer: tuple[Floats, Floats] | None = None) -> WallSizes:
     """Return target edge lengths along the walls for about `count` nodes, in the domain's unit.
 
-    They are ``h = min(h0, piece / 4, gap / 3.5, .45 radius)``, but at least ``h0 / 25`` or 1/400 of the loop,
-    whichever is less. Here h0 is `usual_size`, piece is the length of the wall between two corners, radius is
-    the radius of curvature, and gap is the distance to the nearest wall within 53 degrees of the normal; the
-    other wall at a wide corner does not count. `finer` prescribes sizes (m,) at further points (m, 2). The
-    gradient of the sizes is at most 0.35.
+    ::
+
+        h = max(min(h0, piece / 4, gap / 3.5, 0.45 radius), min(h0 / 25, loop / 400))
+
+    Here h0 is `usual_size`, piece the length of the wall between two corners, gap the distance to the wall in
+    front, radius the radius of curvature, and loop the length of the loop. `finer` are further points (m, 2),
+    and the greatest lengths (m,) there. Lengths change by at most 0.35 per distance.
     """
     largest = usual_size(domain.area, count)
     samples = [_sample(loop, largest) for loop in domain.loops]

@@ -63,10 +63,7 @@ class DomainPart:
 
 
 def spans_between(loop: Loop) -> list[Span]:
-    """Return the spans (parts) of a loop between successive corners with a single cell.
-
-    Corners within a span have two cells.
-    """
+    """Return the parts of a loop that begin and end at corners with one cell; corners between have two."""
     corners = zip(loop.corner_arcs.tolist(), loop.corner_cells.tolist(), strict=True)
     turns = [(arc, cells) for arc, cells in corners if cells != 2]
     pairs = pairwise([*turns, *((arc + loop.length, cells) for arc, cells in turns[:1])])
@@ -202,7 +199,7 @@ def _stretch(
 
 
 def with_copies(mesh: QuadMesh, part: DomainPart) -> QuadMesh:
-    """Return a mesh of the whole domain, copied from the mesh of a part; it need not conform at mirrors."""
+    """Return a mesh of the whole domain, copied from that of a part; nodes at mirror lines may not match."""
     nodes, (loop, arc, on_ray) = mesh.nodes.copy(), _places_in_whole(mesh, part)
     ends = np.flatnonzero(on_ray)
     nearest = np.stack([np.abs(ray.ahead_and_left(nodes[ends])[1]) for ray in part.rays]).argmin(axis=0)
