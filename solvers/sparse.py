@@ -50,7 +50,7 @@ class SparsePattern:
 
     @property
     def fill(self) -> int:
-        """Number of nonzero entries of the factor below its diagonal."""
+        """Number of nonzero entries below the diagonal of the matrix factor."""
         return int(self.arrays[4][-1])
 
     def matrix(self, values: Floats) -> "SparseMatrix":

@@ -55,7 +55,7 @@ def outline_blocks(ax: Axes, grid: Grid) -> None:
 
 
 def mark_vertices(ax: Axes, grid: Grid) -> None:
-    """Draw a dot at each interior vertex where not four cells meet, and a legend of the colours."""
+    """Draw a dot at each irregular interior vertex, and a legend of the colours."""
     points, cells = irregular_points(grid)
     kinds = (cells < 4, _FEW, "3 cells meet"), (cells > 4, _MANY, "5 or more cells meet")
     for among, colour, label in kinds:

@@ -214,7 +214,7 @@ def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tup
 
 
 def line_step(length: Floats, area: Floats, pixels: float) -> int:
-    """Return the step 1, 2, 5, 10, ... with which lines are 6 pixels or more apart in half of the area.
+    """Return k = 1, 2, 5, 10, ... such that every k-th line is drawn, usually 6 pixels or more apart.
 
     `length` and `area` are a pair from `line_gaps`; `pixels` is the number of pixels per unit of length.
     """

@@ -60,7 +60,7 @@ class CellSheet:
 
 
 def layers(grid: Grid, at: Slice, values: list[Floats] | None) -> list[CellSheet]:
-    """Return, for each block with this index, its grid surface of constant index, such as k = 0.
+    """Return the surface of constant index that `at` selects, such as k = 0, in each block with this index.
 
     The surface has the values of the adjacent cells. Raises InputError if no block has the index.
     """

@@ -148,7 +148,7 @@ def _parts(mappings: Any, index: Path, split: str) -> Iterator[Part]:
 
 
 def write_index(file: Path, index: Path, parts: Sequence[PartFacts]) -> None:
-    """Write the index of `parts` to `file`, the present name of `index`. Raises InputError: sizes differ."""
+    """Write the index of `parts` to `file`, a temporary file for `index`. Raises InputError: sizes differ."""
     filled = [facts for facts in parts if facts.count]
     first = filled[0]
     for facts in filled[1:]:

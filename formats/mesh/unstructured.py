@@ -22,7 +22,7 @@ CELLS = {2: "line", 4: "quad", 8: "hexahedron"}  # meshio's names of cells by th
 
 @dataclass(frozen=True)
 class Unstructured:
-    """Nodes without duplicates, quadrilaterals or hexahedra, and the named boundary faces.
+    """Nodes without duplicates, their quadrilaterals or hexahedra, and the named boundary faces.
 
     Parameters
     ----------

@@ -39,7 +39,7 @@ class _Geometry:
 
 
 def read_wkt(source: Source) -> Iterator[Shape]:
-    """Yield the shapes of a WKT file, a geometry in each line; a line ``# name`` before it is its name.
+    """Yield the shapes of a WKT file: one geometry per line, after an optional line ``# name``.
 
     Raises InputError, with the line, if it is not WKT, or if a geometry is no outline.
     """

@@ -44,7 +44,7 @@ class FileLayout:
         return int(self.counted) + self.axes * len(self.dims)
 
     def starts(self, real: int = 1, integer: int = 1) -> list[int]:
-        """Return where blocks and file end if numbers take `real` and `integer` bytes."""
+        """Return the start of each block and the end of the file, if numbers have these sizes in bytes."""
         node = self.axes * real + integer * int(self.iblank)
         return list(
             itertools.accumulate((node * prod(dims) for dims in self.dims), initial=integer * self.header)

@@ -98,7 +98,7 @@ class SurfaceWing:
 
     @cached_property
     def arcs(self) -> Floats:
-        """Arc lengths (strips,) of the strips' parts of the section at half span, in chords."""
+        """Arc length (strips,) of each strip around the section at half span, in chords."""
         z = self.z[[_LEVELS // 2]]
         lengths = [float(norms(np.diff(at_heights(strip, z)[0], axis=0)).sum()) for strip in self.strips]
         return np.array(lengths) / self.sizes(z)[0]

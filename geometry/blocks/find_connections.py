@@ -36,8 +36,8 @@ def find_connections(
 
     Two nodes count as equal if their distance is at most `tolerance` edge lengths, or at most one unit of the
     last digit of the coordinates (see `rounding`). `with_equal_nodes` can make them bitwise equal. `without`
-    lists parts of sides that must not be connected. If more than two sides coincide, two sides of one block
-    are joined first, then the sides of successive blocks.
+    lists parts of sides that must not be connected. If more than two sides coincide, two sides of the same
+    block are joined first, then sides of successive blocks.
 
     Raises InputError: some blocks have two coordinates, others three.
     """

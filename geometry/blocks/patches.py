@@ -71,7 +71,7 @@ class Patch:
 
     @property
     def place(self) -> tuple[int, int]:
-        """Direction normal to the side, and which end of the block it is (see `blocks.block.PLACES`)."""
+        """Index direction (0 to 2) normal to the side; and 0 for its first side, -1 for its last."""
         return PLACES[self.side]
 
     @property

@@ -43,9 +43,9 @@ def shared_nodes(
 def numbered(
     counts: Sequence[tuple[int, ...]], order: Literal["C", "F"] = "C"
 ) -> tuple[Indices, list[Indices]]:
-    """Return the first node number of each block, then the total of nodes; also each block's node numbers.
+    """Return the first node number of each block, followed by the total; and the node numbers of each block.
 
-    Nodes are numbered block after block. Joined nodes have separate numbers.
+    Nodes are numbered block after block. Nodes that blocks share have a number in each block.
     """
     ends = np.cumsum([0, *(int(np.prod(count)) for count in counts)])
     parts = zip(ends, ends[1:], counts, strict=False)
@@ -76,7 +76,7 @@ def joined_labels(count: int, pairs: Sequence[tuple[Indices, Indices]]) -> Indic
 
 
 def with_equal_nodes(blocks: Sequence[Block], connections: Sequence[Connection]) -> tuple[Block, ...]:
-    """Return `blocks` with the nodes that `connections` join made bitwise equal.
+    """Return `blocks` in which the nodes that `connections` join are bitwise equal.
 
     Joined nodes get the coordinates of the first of them. The nodes of the second side of a periodic pair
     become the nodes of the first side, moved by the periodic motion.

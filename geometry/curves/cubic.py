@@ -53,7 +53,7 @@ class CubicTable:
 
 
 def cubic_spline(values: Floats, knots: Floats, places: Floats) -> Floats:
-    """Return the `CubicTable` through `values` (n, ...) at `knots` (n,), evaluated at `places` (p,).
+    """Return values at `places` (p,) of the cubic spline through `values` (n, ...) at `knots` (n,).
 
     >>> knots = np.array([0.0, 1.0, 3.0, 4.0, 6.0])
     >>> float(cubic_spline(knots**3, knots, np.array([2.0]))[0])
@@ -115,8 +115,8 @@ class LimitedSpline:
 def sampled(lines: Floats, arc: Floats, at: Floats) -> Floats:
     """Return points (k, n, ...) at arc lengths `at` (k, n) on k piecewise cubic `lines` (k, m, ...).
 
-    `arc` (k, m) are the arc lengths of the m nodes; `at` is clipped to them. The tangent at a node is the
-    tangent of a parabola through three nodes.
+    `arc` (k, m) are the arc lengths of the m nodes; values of `at` are limited to the last of them. The
+    tangent at a node is the tangent of a parabola through three nodes.
     """
     points = np.empty((*at.shape, lines.shape[2]))
     lines, arc, at = (np.ascontiguousarray(each) for each in (lines, arc, np.minimum(at, arc[:, -1:])))

@@ -113,7 +113,7 @@ class Judgement:
 
     @property
     def verdict(self) -> Literal["pass", "warn", "fail"]:
-        """The worst outcome of all gates and checks."""
+        """The worst outcome of all gates (limits of the user) and all checks of profiles."""
         return "fail" if self.problems else "warn" if self.beyond else "pass"
 
 

@@ -139,7 +139,10 @@ def _run(grid: Grid, kept: slice) -> CellRun:
 
 
 def angles(nodes: Floats) -> tuple[float, float]:
-    """Return maximum and mean of each cell's largest angle in degrees; 360 if `nodes` (ni, nj, 2) fold."""
+    """Return the largest of all cell angles in degrees, and the mean of each cell's largest angle.
+
+    Both are 360 if cells of `nodes` (ni, nj, 2) are folded.
+    """
     if count_folded(nodes):
         return 360.0, 360.0
     table, _ = _angle_table(nodes)

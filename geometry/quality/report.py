@@ -112,7 +112,7 @@ class QualityReport:
         return f"<QualityReport: {', '.join(parts)}>"
 
     def under(self, gates: Gates) -> QualityReport:
-        """Return the report with the limits in `gates` in place of the limits in its profile."""
+        """Return the report with the user's limits `gates` in place of the limits in its quality profile."""
         return replace(self, profile=self.profile.under(_parsed(gates))) if self.profile else self
 
     def broken(self, gates: Gates = ()) -> list[str]:
@@ -140,7 +140,7 @@ class QualityReport:
         return Judgement(tuple(self._broken(gates)), tuple(dict.fromkeys(beyond)), tuple(replaced), profile)
 
     def judged(self, gates: Gates) -> list[tuple[Gate, Figure, bool]]:
-        """Return each gate, the figure that it limits, and whether this figure is beyond the limit."""
+        """Return each limit of the user, the figure that it limits, and whether the figure is beyond it."""
         more, gates = self._compared(), _parsed(gates)
         figures = [gate.figure(self.figures, more) for gate in gates]
         pairs = zip(gates, figures, strict=True)

@@ -15,7 +15,7 @@ UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 
 
 def axis_along(direction: Sequence[float]) -> Motion:
-    """Return a rotation of `direction` (3,) to x; along a coordinate axis, by a multiple of 90 degrees."""
+    """Return a rotation of `direction` (3,) to x, by multiples of 90 degrees if it is a coordinate axis."""
     way = np.array(direction)
     way = way / np.abs(way).max()
     way = way / norms(way)

@@ -90,7 +90,7 @@ class Section:
 
     @property
     def placement(self) -> Floats:
-        """Six numbers that are interpolated between sections: chord, twist in radians, x, y, `about`."""
+        """Chord, twist in radians, x, y and centre of the twist, which are interpolated between sections."""
         return np.array([self.chord, math.radians(self.twist), self.x, self.y, *self.about])
 
 

@@ -147,7 +147,7 @@ class Stack:
 
     @property
     def dihedrals(self) -> Floats:
-        """Dihedral angles (n - 1,) of the panels in radians."""
+        """Dihedral angles (n - 1,) in radians of the panels between neighbouring sections."""
         return arctan2(np.diff([section.y for section in self.sections]), np.diff(self.z))
 
     @property

@@ -74,9 +74,9 @@ class FirstCell:
             self.heights()  # raises for values out of range
 
     def heights(self, unit: float = 1.0) -> AtWalls | None:
-        """Return the first-cell height in the unit of the request, or heights by wall; None if not requested.
+        """Return the first-cell height, or heights by wall; None if not requested.
 
-        `unit` is the reference length if `length` is None.
+        Heights are in the unit of `first_cell`. `unit` is the reference length for y+ if `length` is None.
         """
         setting = self.first_cell if self.y_plus is None else self.y_plus
         if isinstance(setting, Mapping):

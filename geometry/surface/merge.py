@@ -33,8 +33,8 @@ def near_pairs(points: Floats, distance: float) -> Indices:
 def merged(patches: Sequence[Floats]) -> tuple[Floats, tuple[Indices, ...]]:
     """Return all nodes (n, 3) of `patches` (ni, nj, 3), and for each patch the indices (ni, nj) of its nodes.
 
-    Nodes on edges that are closer than `TOLERANCE` times the size of the surface become one: the first of
-    them.
+    On edges, nodes that are closer than `TOLERANCE` times the size of the surface are replaced by the first
+    of them.
     """
     points = np.concatenate([np.ascontiguousarray(patch).reshape(-1, 3) for patch in patches])
     edges = [

@@ -25,7 +25,7 @@ def provenance(arguments: Sequence[str] | None = None) -> dict[str, str]:
 
 
 def abridged(words: Sequence[str]) -> list[str]:
-    """Return a command line in which a long list of inputs is shortened, for the grids of a dataset.
+    """Return a command line with long lists of inputs shortened, as it is stored in the grids of a dataset.
 
     >>> abridged(["tfi", *(f"{k}.csv" for k in range(40)), "--res", "80"])
     ['tfi', '0.csv', '[38 more]', '39.csv', '--res', '80']

@@ -52,9 +52,9 @@ class GateOptions:
     )
 
     def criteria(self, leave_out: bool = False, *, more: Sequence[str] = ()) -> "Criteria | None":
-        """Return the gates and profiles, or None without any; gates may also name the quantities in `more`.
+        """Return the quality limits, or None without any; `more` are quantities that can also be limited.
 
-        Raises InputError if a gate is invalid, or if grids are to be left out without gate and profile.
+        Raises InputError if a limit is invalid, or if grids are to be left out although there are no limits.
         """
         if not (self.fail_on or self.profile):
             if leave_out:

@@ -57,7 +57,7 @@ def _surface(item: Item[Stack | Aircraft], parameters: Mapping[str, Any]) -> tup
 
 
 def shared(parameters: Mapping[str, Any], batch: Batch, criteria: Criteria | None) -> dict[str, Any]:
-    """Return `parameters` with the threads of a worker, and with percentiles if the criteria need them."""
+    """Return `parameters` with a worker's number of threads, and with percentiles if criteria need them."""
     percentiles = criteria is not None and criteria.percentiles
     threads = batch.engine.threads(parameters.get("threads"))
     return {**parameters, "threads": threads, "percentiles": percentiles}

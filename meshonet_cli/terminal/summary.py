@@ -29,7 +29,7 @@ def figures(quality: Quality) -> dict[str, float]:
 
 
 def gates_not_met(judgement: Judgement | None) -> list[str]:
-    """Return the failed gates as texts for JSON."""
+    """Return the quality limits by which a grid fails, as texts for JSON."""
     return [with_options(problem) for problem in judgement.problems] if judgement else []
 
 

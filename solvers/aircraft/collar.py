@@ -64,7 +64,7 @@ def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
 
 
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
-    """Return from which nodes of a wing's section lines should lead to the corners of the rectangle `box`.
+    """Return the nodes of a wing's section from which lines lead to the corners of the rectangle `box`.
 
     The first number is the distance in nodes from the middle of the trailing edge, the second the distance
     from the nose. Both are at least `fewest`. Cells on both sides of a corner then have similar lengths.

@@ -130,7 +130,7 @@ def _by_turning(points: Floats, arcs: Floats) -> Floats:
 
 
 def corner_turns(model: CadModel, uses: tuple[EdgeUse, ...]) -> Floats:
-    """Return turning angles (k,) in degrees at the starts of a loop's edges; 180 beside empty edges."""
+    """Return turning angles (k,) in degrees where a loop's edges start; 180 next to edges of length 0."""
     ends = np.array([0.0, 1e-4, 1.0 - 1e-4, 1.0])
     starts, stops, poles = [], [], []
     for use in uses:

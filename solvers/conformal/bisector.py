@@ -18,8 +18,8 @@ SWEEPS = 3  # over the corners, which influence each other a little
 def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> tuple[Floats, Floats]:
     """Return weights (n, corners) and shifts (corners,) that make grid lines bisect the angles at corners.
 
-    The shifts are along the wall. A node moves by the sum of all shifts, each multiplied by the node's
-    weight. `wall` (n,) are the wall nodes, counter-clockwise; `corners` are indices of nodes.
+    The shifts are along the wall. A node moves by the sum of all shifts, each multiplied by the node's weight
+    for that corner. `wall` (n,) are the wall nodes, counter-clockwise; `corners` are indices of nodes.
     """
     n, step = len(wall), 2.0 * np.pi / len(wall)
     between = np.subtract.outer(corners, corners) % n

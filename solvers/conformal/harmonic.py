@@ -13,11 +13,10 @@ FAR = 37.0  # exp(-37) is the precision of a double: modes that have decayed so 
 
 
 def extend(boundary: Boundary) -> Floats:
-    """Return the nodes (ni, nj, 2) of a grid that solves Laplace's equation; boundary nodes are exact.
+    """Return the nodes (ni, nj, 2) of the solution of Laplace's equation; boundary nodes are exact.
 
-    The solution is a sum of one Fourier series per side, here for the side eta = 0 with coefficients b_k or
-    c_k of its nodes. a is height / length of the rectangle, T is log(outer length / inner length) of the
-    annulus::
+    Each side contributes a series with the Fourier coefficients b_k or c_k of its nodes, written for eta = 0
+    on this side. a is height / length of a rectangle, T is log(outer length / inner length) of an annulus::
 
         quad   bilinear in corners + sum over sides, k of b_k sin(k pi xi) sinh(k pi a (1-eta)) / sinh(k pi a)
         o      linear in wall means + sum over walls, k of c_k exp(2 pi i k xi) sinh(k T (1-eta)) / sinh(k T)

@@ -108,7 +108,7 @@ def _made_valid(nodes: Floats, weights: Weights, periodic: bool) -> bool:
 
 
 def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floats) -> None:
-    """Repair and minimise planar `nodes` (ni, nj, 2) of an O grid around skewed cells, in place.
+    """Unfold and optimise planar `nodes` (ni, nj, 2) of an O grid around skewed cells, in place.
 
     Such cells arise where splines have smoothed grid lines that leave corners of the wall. `relief` is the
     result of `relief_of`.

@@ -52,8 +52,8 @@ def value(nodes: Floats, weights: Weights) -> float:
 def relief_of(wall: Floats) -> Floats:
     """Return factors (ni,) for the angle terms of the functional at the nodes of a closed `wall` (ni, 2).
 
-    The factor is 1, but sin⁴ of half the angle of the domain where this angle exceeds 320 degrees, as at a
-    sharp trailing edge. The least possible value of the term is then the same as for right angles.
+    The factor is 1. Where the angle of the domain exceeds 320 degrees, as at a sharp trailing edge, it is
+    sin⁴ of half this angle. The least possible value of the term is then the same as for right angles.
     """
     half = 0.5 * (np.pi - turning(wall[:-1], closed=True))
     share = np.where(half > 8.0 / 9.0 * np.pi, (np.maximum(sin(half), 1e-3) ** 2) ** 2, 1.0)

@@ -53,7 +53,7 @@ def optimise(
     targets : (e,) target lengths of `mesh.edges` in any unit, because only ratios of neighbours matter.
     tolerance : the iteration ends after three consecutive relative gains below a hundredth of this.
     turning : angle in radians by which a wall may turn along one edge without penalty.
-    weights : w and β of the functional if there are `targets` or if growth is penalised.
+    weights : w (angles) and β (smoothness) of the functional if there are `targets` or a penalty for growth.
     growth : weight of a penalty for growth ratios, and the logarithm of the largest ratio without penalty.
     """
     problem = problem_of(mesh, held, aspects, targets, turning)

@@ -38,7 +38,7 @@ FUTILE = 2.4e7  # nodes times iterations that may be spent on patches which stay
 
 @dataclass
 class UnfoldingBudget:
-    """What is left of the work, in nodes times iterations, that may be spent on untangling in vain."""
+    """Remaining work, in nodes times iterations, that untangling may spend without success."""
 
     left: float = FUTILE
 

@@ -50,7 +50,7 @@ AREA_SMOOTHING = 0.16  # coefficient of a smoothing step of the areas along a le
 
 @dataclass(frozen=True)
 class MarchLayers:
-    """Requirements for the rows of cells of a march."""
+    """Requirements for the rows of cells of a marching method."""
 
     first: float  # first-cell height, in the unit of the boundary
     growth: float | None  # largest growth ratio; None: not limited

@@ -97,7 +97,7 @@ class PlaceLinks:
     rest: Floats
 
     def values(self, places: Floats) -> Floats:
-        """Return the left sides f0 u0 + f1 u1 + rest (p,) of the conditions, for positions u = `places`."""
+        """Return the value f0 u0 + f1 u1 + rest (p,) for each pair u0, u1 of positions in `places`."""
         return np.asarray((self.factors * places[self.pairs]).sum(axis=1) + self.rest)
 
 

@@ -54,7 +54,7 @@ class Heights:
 
 
 def check_fit(heights: Heights, boundary: Boundary) -> None:
-    """Raise InputError if `heights` do not suit `boundary`: wrong sides, too few cells or too high ones."""
+    """Raise InputError if `heights` do not fit `boundary`: wrong sides, too few cells, too large heights."""
     if boundary.around_body and (heights.north or heights.west or heights.east):
         raise InputError(
             f"a spacing off north, west or east in topology {boundary.topology}",

@@ -36,11 +36,11 @@ class ChannelLines:
         return cls(upper, upper, squares)
 
     def links(self, u: Floats, start: Floats, pairs: Indices, weight: float) -> PlaceLinks:
-        """Return conditions that lines across the channel do not lean more than with the places `start` (k,).
+        """Return conditions on `u` (k,) by which lines across the channel lean no more than for `start` (k,).
 
-        Places `u` (k,) run from 0 to 1 around a blade. Lean is the tangent of the angle between a line and
-        the normal of the blade's layers. Its increase is linearised at `u` and multiplied by `weight`. Each
-        line joins the two nodes with indices `pairs` (p, 2).
+        `u` and `start` are places from 0 to 1 around a blade. Lean is the tangent of the angle between a line
+        and the normal of the blade's layers. Its increase is linearised at `u` and multiplied by `weight`.
+        Each line joins the two nodes with indices `pairs` (p, 2).
         """
         one = u[pairs[:, 0]]
         slope = np.interp(one, self.upper, np.gradient(self.lower, self.upper))

@@ -31,7 +31,7 @@ _TRIES, _NEAR = 4, 0.03  # largest number of choices of counts; sufficient relat
 
 
 def coarse_section(plane: SectionPlane, *, early: bool = True) -> Layout:
-    """Return a coarse block layout of a section; `early` first places nodes at corners of the blade.
+    """Return a coarse block layout of a section; if `early`, nodes are at the blade's corners from the start.
 
     Raises InputError if there is no room for inlet or outlet; NoValidGridError if cells are folded.
     """

@@ -19,7 +19,8 @@ class RowRequest(VolumeRequest):
     first_cell : float, optional
         Height of the first cells at blade, hub, casing and tip; by default 1e-3.
     y_plus, reynolds, chord_fraction : float, optional
-        First-cell height as y+ on a turbulent flat plate, with the Reynolds number of the longest chord.
+        First-cell height as y+ on a turbulent flat plate, with the Reynolds number of the longest chord, at a
+        distance of `chord_fraction` chords from its leading edge.
     growth : float, optional
         Largest growth ratio of cells away from walls; by default 1.2.
     cells : int, optional

@@ -39,7 +39,7 @@ class FiveBlocks(NamedTuple):
 
 @dataclass(frozen=True)
 class CrossSection:
-    """A closed curve whose inside is divided into a core and a ring of four blocks."""
+    """A closed curve whose inside is divided into a core block and four blocks around it."""
 
     arcs: Sides  # nodes on four sides that meet at corners of blocks
     first: float | None = None  # first-cell height at the wall; None: about that of the core's cells

@@ -175,7 +175,7 @@ class WallLayers:
         return self.of_ring(number).rows(float(self.rings[number].thickness.max()))
 
     def attached_cells(self, chords: Chords, counts: Indices) -> int:
-        """Return how many cells layers and their outskirts have, if rows of blocks have `counts` cells."""
+        """Return how many cells layers and outer rows add if rows of blocks have `counts` cells."""
         along = chords.along_loops(counts).tolist()
         total = sum(along[number] * self.ring_rows(number) for number in self.rings)
         if self.near is not None:

@@ -37,8 +37,8 @@ class WallRows:
     Parameters
     ----------
     loops : for each row, the index of the loop along which it goes.
-    across : (b, 2) for each block, index of the row that its lines from south to north cross, and of the row
-        that its lines from west to east cross; -1: no row. Refinement does not change these indices.
+    across : (b, 2) for each block, the row that its lines from south to north cross, then the row that its
+        lines from west to east cross; -1: none. Refinement does not change these indices.
     back : (b, 2) whether these lines lead towards the wall.
     """
 

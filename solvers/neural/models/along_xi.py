@@ -104,7 +104,7 @@ class WNO(AlongXi):
 
 @cache
 def wavelets(n: int, levels: int) -> Floats:
-    """Return orthonormal periodic functions of the last level: the scaling functions, then the wavelets.
+    """Return the scaling functions, then the wavelets, of the last level; all are orthonormal and periodic.
 
     The array (2 n / 2^levels, n) has the values of one function per row, at n nodes; 2^levels divides n.
     """

@@ -62,7 +62,7 @@ class Architecture:
         return points
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return the model's corrections (batch, p, 2) of the base grid at p points.
+        """Return the model's corrections (batch, p, 2) to an initial grid, the base grid, at p points.
 
         `xp` is numpy or torch, `w` has all arrays of the model by name. `inputs` is the result of `encode`,
         `places` the result of `seen`. For models that are defined only at the nodes of the training grids,

@@ -111,6 +111,6 @@ def _shares(near: Complexes, move: Complexes) -> Floats:
 
 
 def share(start: Complexes, answer: Complexes) -> float:
-    """Return the part of the step from grid `start` to grid `answer` to take: 1, but less if cells fold."""
+    """Return how much of the step from grid `start` to `answer` can be taken: 1, or less if cells fold."""
     tried = (part for part in (1.0, *SHARES) if not count_folded(pairs_of(start + part * (answer - start))))
     return next(tried, 1.0)

@@ -120,6 +120,6 @@ class Parametrisation:
         return np.asarray(coords[0] + 1j * coords[1])
 
     def jacobians(self, coords: Complexes) -> Floats:
-        """Return the determinants (t,) of the map `coords` (t, 3), each divided by its target value."""
+        """Return Jacobians (t,) of triangles, divided by their targets, for map values `coords` (t, 3)."""
         first, second = coords[:, 1] - coords[:, 0], coords[:, 2] - coords[:, 0]
         return np.asarray(times(np.conj(first), second).imag / (2.0 * self.surface.areas * self._wanted))

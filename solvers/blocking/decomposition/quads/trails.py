@@ -44,7 +44,7 @@ class Trails:
         return self._on_piece(self.vertex == vertex, 0.0)
 
     def at_edge(self, face: int, edge: int, part: float) -> tuple[int, float]:
-        """Return the trail along a wall edge of a triangle, and its length up to a `part` of the edge."""
+        """Return which line follows a wall edge of a triangle, and its length up to a `part` of the edge."""
         return self._on_piece((self.face == face) & (self.edge == edge), part)
 
     def _on_piece(self, which: Bools, part: float) -> tuple[int, float]:
@@ -54,7 +54,7 @@ class Trails:
         return trail, float(start + part * (stop - start))
 
     def locate(self, trail: Indices, length: Floats) -> tuple[Indices, Floats]:
-        """Return pieces (q,) at distances `length` (q,) along trails, and the positions in them, 0 to 1."""
+        """Return pieces (q,) of lines at distances `length` (q,), and the positions in each, 0 to 1."""
         ends = self.length[self.first[1:] + np.arange(len(self.first) - 1)]
         offset = np.append(0.0, np.cumsum(ends))
         owner = np.repeat(np.arange(len(ends)), np.diff(self.first))

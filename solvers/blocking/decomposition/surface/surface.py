@@ -69,7 +69,7 @@ class Triangulation:
 
     @cached_property
     def gradients(self) -> Complexes:
-        """Gradients (t, 3) of the linear functions that are 1 at a corner and 0 at the two other corners."""
+        """Gradients (t, 3) of linear functions that are 1 at one corner of a triangle and 0 at the others."""
         return np.asarray(times(1j, self.edges[:, NEXT]) / (2.0 * self.areas[:, None]))
 
     @cached_property
@@ -96,7 +96,7 @@ class Triangulation:
 
     @cached_property
     def masses(self) -> Floats:
-        """(n,) for each vertex, one third of the total area of the triangles around it."""
+        """One third of the total area of the triangles around each vertex (n,)."""
         return self.gather(np.repeat(self.areas[:, None] / 3.0, 3, axis=1))
 
     @cached_property
