@@ -157,7 +157,7 @@ def size_of(sample: Boundary | Grid) -> str:
 
 
 def size_remedy(own: str, first: str) -> str:
-    """Return advice to make the size of a sample, `own`, that of the `first`; texts as from `size_of`."""
+    """Return advice for a sample whose size `own` differs from the `first`; both are texts of `size_of`."""
     kinds = {size.partition(" of ")[0].rpartition(" ")[2] for size in (own, first)}
     if "blocks" not in kinds:
         return "set {res} and {topology}"

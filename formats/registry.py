@@ -167,7 +167,7 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
 
 
 def read_sections(text: str, fmt: str | None = None) -> Iterator[Grid | Shape]:
-    """Yield the grids in a file. If it has none, or is a layout or a designation, yield its shapes.
+    """Yield the grids in a file. Layouts, designations and files without grids give shapes instead.
 
     Raises InputError as `read_shapes`.
     """

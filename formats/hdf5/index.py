@@ -106,9 +106,9 @@ class Part:
 
 
 def shown_parts(file: h5py.File, source: Source) -> list[Part] | None:
-    """Return the parts of a dataset in order, or None if the open `file` is no index.
+    """Return the parts of a dataset in order, or None if the open `file` is no index of parts.
 
-    Raises InputError if a part is missing or not beside the index, or if the rows are not consecutive.
+    Raises InputError if a part is missing or elsewhere, or if the samples of parts are not consecutive.
     """
     import h5py
 

@@ -26,7 +26,7 @@ T = TypeVar("T")
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:
-    """Return an iterator over boundaries, outer edges of grids, or domains of multi-block grids.
+    """Return an iterator over the boundaries of a file; for grids, they are outer edges or domains.
 
     An invalid sample raises InputError; the iterator then continues with the next sample.
     """
@@ -166,7 +166,7 @@ class DatasetSamples:
                 yield str(error)
 
     def named(self, start: int, stop: int, step: int = 1) -> str:
-        """Return the text ``FILE#0:9:2`` that selects each `step`-th sample from `start` to `stop` - 1."""
+        """Return text, such as ``FILE#0:9:2``, for each `step`-th sample from `start` to `stop` - 1."""
         rows = self.rows[start:stop:step]
         split = f"{self.split}," if self.split else ""
         words = f"{rows[0]}" if len(rows) == 1 else f"{rows.start}:{rows.stop}"

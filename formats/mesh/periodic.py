@@ -132,7 +132,7 @@ def cells_beside(connection: Connection, cells: Sequence[Indices]) -> tuple[Indi
 
 
 def donor_range(each: Connection) -> Range:
-    """Return the donor's node range; along a reversed direction, it starts at the greater index."""
+    """Return the donor's node range; along a reversed direction, the range begins at the greater index."""
     span = list(each.donor_range)
     for way in each.orientation:
         if way < 0:

@@ -19,8 +19,8 @@ _ORDERS = {"<": "little", ">": "big"}  # names of byte orders
 def candidates(data: memoryview, wanted: Options = frozenset()) -> list[Candidate]:
     """Return all layouts for which a binary file would have the length of `data`.
 
-    Layouts by planes are included if `wanted` contains ``planes``, or if each Fortran record has one plane.
-    Raises InputError if no layout fits.
+    Layouts that store whole planes are included if `wanted` contains ``planes``, or if each Fortran record
+    has one plane. Raises InputError if no layout fits.
     """
     fitting: list[Candidate] = []
     tried: list[tuple[int, str]] = []

@@ -167,7 +167,7 @@ def edges() -> Iterator[tuple[Side, Side]]:
 
 
 def edge_of(face: Floats, side: Side, second: Side) -> Floats:
-    """Return the nodes (n, 3) of an edge as a view: `face`, on `side`, meets the face on `second` there."""
+    """Return a view of the nodes (n, 3) of `face`, on `side`, at its edge with the face on `second`."""
     axis, end = PLACES[second]
     return np.asarray(np.moveaxis(face, axis - (axis > PLACES[side][0]), 0)[end])
 

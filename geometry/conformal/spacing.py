@@ -41,7 +41,7 @@ def conformal_knots(
     ----------
     marks : (m,) ascending arc lengths in (0, length) at which there must be nodes.
     at : (m,) indices of the nodes at `marks`; if None, they are multiples of one of the `steps`.
-    steps : descending; used is the first that fits before the first mark, and the first after the last mark.
+    steps : descending; used is the first for which enough cells lie before and after all marks.
 
     Raises InputError: the conformal angle does not increase along the curve; no convergence.
     """

@@ -57,7 +57,7 @@ class Channel:
     hub_gap, tip_gap : distances of the blade from hub and casing, in the unit of the curves.
 
     Raises InputError: points that are no curve; a curve that touches the axis; hub and casing that touch;
-    gaps that leave no span.
+    gaps that leave no room for the blade.
     """
 
     def __init__(self, hub: Floats, casing: Floats, hub_gap: float = 0.0, tip_gap: float = 0.0) -> None:

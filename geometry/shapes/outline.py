@@ -181,7 +181,7 @@ class Outline:
         return o_boundary(wall, nj, box.mean(axis=0), radius, curve, self.name, extent, notes=notes)
 
     def clockwise(self) -> Curve:
-        """Return the curve clockwise from its rightmost point; from the middle of a vertical right side."""
+        """Return the curve, clockwise from its rightmost point or the middle of a vertical right side."""
         curve = self.curve.reversed() if self._left else self.curve
         p, n = curve.points, len(curve.points)
         corner = np.isin(np.arange(n), curve.corner_index)

@@ -21,7 +21,7 @@ def check_growth(growth: float | None, most: float = LARGEST) -> None:
 def growth_ratio(first: float, length: float, cells: int) -> float:
     """Return the growth ratio g >= 1 with which `cells` cells, the first of size `first`, fill `length`.
 
-    It satisfies first (gⁿ - 1)/(g - 1) = length. Raises InputError: `cells` cells of size `first` exceed
+    With n = `cells`, first (gⁿ - 1)/(g - 1) = length. Raises InputError: `cells` cells of size `first` exceed
     `length`; g is above `LARGEST`.
 
     >>> growth_ratio(1.0, 7.0, 3)

@@ -52,7 +52,7 @@ def check_manifold(nodes: Floats, lattices: tuple[Indices, ...], crowded: Indice
 
 
 def check_gaps(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> None:
-    """Raise InputError if two nodes of open `edges` (k, 2), those of one quad only, nearly coincide."""
+    """Raise InputError if two nodes on the rim of the surface, open `edges` (k, 2), nearly coincide."""
     if not len(edges):
         return
     length = np.sqrt(((nodes[edges[:, 0]] - nodes[edges[:, 1]]) ** 2).sum(axis=1))
@@ -73,7 +73,7 @@ def check_gaps(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> 
 
 
 def check_seams(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> None:
-    """Raise InputError if nodes of open `edges` (k, 2), those of one quad only, lie on other open edges."""
+    """Raise InputError if a node on the rim of the surface, open `edges` (k, 2), lies within one of these."""
     ends = nodes[edges]
     along = ends[:, 1] - ends[:, 0]
     length = norms(along)

@@ -21,9 +21,9 @@ def open_sides(quads: Indices, twin: Indices) -> Indices:
 
 
 def paired(quads: Indices, nodes: int) -> tuple[Indices, Indices]:
-    """Return for each half-edge (4 m,) the one opposite it, or -1 at open edges; also surplus half-edges.
+    """Return for each half-edge (4 m,) the opposite one, or -1 at open edges; also surplus half-edges.
 
-    If three or more quads share an edge, all but two of its half-edges are surplus. `nodes` is the number.
+    A half-edge is an edge of one quad. If three or more meet, all but two of them are surplus.
     """
     first, last = ends_of(quads)
     key = np.minimum(first, last) * nodes + np.maximum(first, last)

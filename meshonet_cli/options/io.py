@@ -85,7 +85,7 @@ class PrintOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class InputOptions(PrintOptions):
-    """Options for the selection of inputs from folders, archives and lists, for shards, and for messages."""
+    """Options for inputs from folders, archives and lists, for shards of inputs, and for messages."""
 
     pick: list[str] | None = _option(
         metavar="PATTERN", help="Use only files whose name matches PATTERN, e.g. 'naca*', of folders, .zip "

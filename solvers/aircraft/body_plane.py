@@ -182,8 +182,8 @@ class BodyEnd:
     def of(cls, points: Points, sides: Sequence[Side]) -> Self:
         """Return the part of the grid between the nose or the tail and the nearest wing.
 
-        `sides` has, for each level around the body, the wing's nodes that face this part; level 0 is on it.
-        The coordinate s of these nodes is measured from the tip of nose or tail.
+        `sides` has the wing's nodes that face this part, level by level; the first level is the body. Their
+        coordinate s is measured from the tip of nose or tail.
         """
         nodes, cells = sides[0]
         way, last = min((float(nodes[k, 0]), float(cells[k])) for k in (0, -1))

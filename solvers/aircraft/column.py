@@ -91,7 +91,7 @@ class ColumnPlan:
 def planned_column(
     holes: Sequence[Sequence[Hole]], first: float, growth: float
 ) -> tuple[ColumnPlan, list[ColumnLevel]]:
-    """Return the plan of a column and the column on each level; `holes` has sections by wing and level."""
+    """Return the plan of a column (cells around a wing, from bottom to top) and the column on each level."""
     corners = planned_corners([hole for each in holes for hole in each])
     collars, levels = zip(*(planned_collar(each, corners, first, growth) for each in holes), strict=True)
     plan = ColumnPlan(collars, holes[-1][0].fin)
@@ -126,7 +126,7 @@ class ColumnLevel:
         return replace(self, plan=plan, levels=tuple(levels))
 
     def beside_fin(self, fin: ColumnLevel) -> ColumnLevel:
-        """Return this column of a wing with its top (theta = pi) halfway in zeta between wing and `fin`."""
+        """Return this column around a wing with its top moved halfway to the level of the `fin`."""
         zeta = self.zeta
         return replace(self, crown=zeta + 0.5 * (fin.levels[-1].hole.zeta - zeta))
 

@@ -24,7 +24,7 @@ def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: fl
 
     Parameters
     ----------
-    normal : (p, 3) for each line, the point on its normal to the body at the distance `first`.
+    normal : (p, 3) for each line, the point off the body along its normal, at the distance `first`.
     rings : for each wing, indices (n, m) of lines: n around the wing, m from the wing outwards.
     """
     turned = (normal - points[1]) / first

@@ -35,6 +35,6 @@ def unfolded(layout: Layout, held: Bools) -> Layout:
 
 
 def with_more_cells(layout: Layout, times: int) -> Layout:
-    """Return the layout with `times` cells for each, along each direction; folded cells are repaired."""
+    """Return the layout with each cell divided into `times` x `times` cells; folded cells are repaired."""
     fine = multiplied(layout, times)
     return unfolded(fine, fine.mesh.wall_nodes)

@@ -58,7 +58,7 @@ class Passage:
     ) -> Self:  # fmt: skip
         """Return the passage around a closed front (the blade, or the outer edge of its layers).
 
-        Before and behind the front, its blocks end at the distances `near`, in pitches, but at most at the
+        Before and behind the front, the blocks end at the distances `near`, in pitches, but at most at the
         distances `inlet` and `outlet`. `centre` is a point inside the front.
         """
         points = front.curve.points
@@ -87,7 +87,7 @@ class Passage:
         return np.asarray(((complex_of(points) - self.centre) / self.period).real)
 
     def at(self, axial: Sequence[float], along: Sequence[float]) -> Floats:
-        """Return points (n, 2) at `axial` (n,) from the centre along the axis and `along` (n,) pitches."""
+        """Return points (n, 2): `axial` (n,) along the axis from the centre, `along` (n,) pitches aside."""
         centre = pairs_of(np.array(self.centre))
         return centre + np.array(axial)[:, None] * self.axis + np.array(along)[:, None] * self.pitch
 

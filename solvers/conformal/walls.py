@@ -68,7 +68,7 @@ def is_rough(body: StripWalls) -> bool:
 
 
 def sharp_turns(body: StripWalls) -> tuple[int, ...]:
-    """Return the node indices of trailing-edge corners, then of other turns that lines may cross."""
+    """Return the node indices of trailing-edge corners, then of other sharp turns of the wall."""
     others = set(np.flatnonzero(_turn(body) > SHARP_TURN).tolist()) - set(body.corners)
     return (*body.corners, *sorted(others))
 

@@ -29,7 +29,7 @@ class Sources:
 
 
 def sources_of(table: NodeTable, moved: Bools) -> Sources:
-    """Return the boundary nodes from which displacements are interpolated, with the `moved` ones (mask (n,)).
+    """Return the boundary nodes from which displacements are interpolated; `moved` (n,) marks moved nodes.
 
     Far from the moved nodes, one node stands for a group of fixed nodes.
     """

@@ -46,7 +46,7 @@ class GrowthLimit:
         return cls(limit, np.clip(growth, -limit, limit), change)
 
     def values(self, growth: Floats, weight: float) -> Floats:
-        """Return the penalty (..., k) of the logarithms `growth` of growth ratios; `weight` is w."""
+        """Return the penalty (..., k) of growth ratios with logarithms `growth`; `weight` is w."""
         excess = np.maximum(np.abs(growth) - self.limit, 0.0)
         near = np.minimum(excess, LINEAR)
         return np.asarray(weight * near * (2.0 * excess - near) + self.change * (growth - self.wanted) ** 2)

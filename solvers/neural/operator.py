@@ -49,7 +49,7 @@ class Operator(ABC):
         `polish` is the number of improving steps after the network. With `paste`, given boundary nodes
         replace predicted ones. `dtype` is the arithmetic of U-Nets, ``float64`` or ``float32``; grids differ
         by about 1e-6. `threads` is the number of batches of U-Nets that run at the same time. Operators
-        ignore parameters that do not apply to them. Raises InputError if a boundary has another topology.
+        ignore parameters that do not apply to them. Raises InputError if the topology is not supported.
         """
 
     @property

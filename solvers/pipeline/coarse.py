@@ -54,7 +54,7 @@ def solve_coarse(
 
 @dataclass(frozen=True)
 class Sequenced(Wrapper):
-    """Solves by `method` on every 2^levels-th node, then again and again on more nodes, up to all."""
+    """Solves by `method` on every 2^levels-th node, then on finer and finer grids up to all nodes."""
 
     levels: int
 

@@ -164,7 +164,7 @@ class Chords:
         return self.rounded(exp(mean), self.least if least is None else least)
 
     def rounded(self, wanted: Floats, least: Indices) -> Indices:
-        """Return permitted numbers of cells near `wanted` (chords,), and at least `least` (chords,)."""
+        """Return permitted numbers of cells near `wanted` (chords,) that are at least `least` (chords,)."""
         times = self.multiple
         return times * np.maximum(-(-least // times), nearest_whole(wanted / times).astype(np.intp))
 

@@ -50,7 +50,7 @@ class SectionPlan:
     wake: tuple[float, float]
 
     def bent(self, plane: SectionPlane, nodes: Floats) -> Floats:
-        """Return `nodes` (n, 2), m' (coordinate along the flow) and theta, turned to follow the wake."""
+        """Return `nodes` (n, 2), m' (along the flow) and theta, shifted in theta to follow the wake."""
         most = self.wake[0] + self.wake[1] * (plane.height - 0.5)
         start = float(plane.edges[1, 0])
         t = np.maximum(nodes[:, 0] - start, 0.0) / (plane.map.length - start)

@@ -59,7 +59,7 @@ class Rise:
         return replace(self, deep=self.deep[part], moves=self.moves[part])
 
     def shares(self, heights: Floats) -> Floats:
-        """Return the fractions (levels, k) of `moves` by which nodes at `heights` (levels, k) move."""
+        """Return which fractions (levels, k) of the displacements `moves` apply at `heights` (levels, k)."""
         off = self.up * (heights - self.end)
         away = np.where(off > 0.0, off / self.gap, -off / self.deep)
         return np.asarray(smooth_step(np.clip(1.0 - away, 0.0, 1.0)))

@@ -47,7 +47,7 @@ class SectionPlane:
 
     @classmethod
     def of(cls, row: Row, height: float, first: float, growth: float, share: float = 1.0) -> Self:
-        """Return the section at `height` h, from 0 to 1; `share` is a factor on the thickness of layers."""
+        """Return the section at `height`, from 0 at the hub to 1; `share` is a factor on layer thickness."""
         u, lines = _lines(row.surface)
         s, theta = row.surface.crossings(lines, np.full(len(u), height)).T
         to = row.channel.meridional(height)

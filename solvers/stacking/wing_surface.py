@@ -74,7 +74,7 @@ def wing_surface(stack: Stack, settings: WingSurface | None = None) -> tuple[Gri
 
 
 def refuse_crossing(stack: Stack, unit: Floats) -> None:
-    """Raise InputError if sections rotated about x cross; `unit` (sections, n, 2) are nodes at unit chord."""
+    """Raise InputError if rotated sections intersect; `unit` (sections, n, 2) are nodes at unit chord."""
     cants = stack.cants
     if not cants.any():
         return

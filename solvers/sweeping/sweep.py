@@ -69,8 +69,8 @@ def sweep(section: Grid, path: Path, settings: Sweep | None = None) -> Grid:
     The first plane is the patch ``inlet``, the last ``outlet``; a closed path has neither. Outer patches
     without a name are called ``wall``, and outer patches without a kind are walls.
 
-    Raises InputError if the section is not planar or is periodic, if a bend is too tight for the section, if
-    the path needs too many planes, or as `frames_along`.
+    Raises InputError as `frames_along`, and if the section is not planar or is periodic, if a bend is too
+    tight for the section, or if the path needs too many planes.
     """
     settings = settings or Sweep()
     check_planes(section, settings.planes)

@@ -42,7 +42,7 @@ def naca(designation: str) -> Airfoil:
 
 
 def naca_points(designation: str, n: int = POINTS) -> Floats:
-    """Return points (2 n - 1, 2), cosine-spaced in x, from the trailing edge over the top, back below."""
+    """Return points (2 n - 1, 2), cosine-spaced in x, from the trailing edge over the top and back below."""
     digits, sharp = _split(designation)
     x = 0.5 - 0.5 * cos(np.linspace(0.0, np.pi, n))
     half = thickness(x, int(digits[-2:]) / 100, sharp=sharp)

@@ -44,7 +44,7 @@ def fading(m: int, n: int) -> Floats:
 
 @lru_cache(maxsize=16)
 def cubic(n: int, count: int) -> Floats:
-    """Return the matrix (count, n) from second derivatives at knots to spline minus linear interpolant."""
+    """Return the matrix (count, n) from second derivatives at n knots to the spline minus its polygon."""
     return _weighted(n, count, 2)
 
 

@@ -49,9 +49,9 @@ class GrowthLines:
     ) -> Self:
         """Return all pairs of consecutive edges on grid lines, each with a limit on its length ratio.
 
-        Limits are logarithms. `limit` is for grid lines from the nodes in the mask `walls` (n,), and where
-        lines cross sides of blocks; `elsewhere` is for all other pairs. Beside a wall, pairs parallel to it
-        may also have the ratio that edges on the wall have, unless the wall's nodes are `sliding`.
+        Limits are logarithms. `limit` is for grid lines that leave walls, at nodes in the mask `walls` (n,),
+        and for lines across sides of blocks; `elsewhere` is for other pairs. A larger ratio on a wall is also
+        the limit on lines parallel to this wall, unless its nodes are `sliding`.
         """
         mesh, pairs = layout.mesh, cls.of(layout.mesh, elsewhere)
         nodes = pairs.nodes

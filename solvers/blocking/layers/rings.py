@@ -207,9 +207,9 @@ def _ring(loop: Loop, arcs: Floats, levels: Floats) -> Ring:
 
 
 def column_weights(index: Floats, low: Indices, high: Indices) -> tuple[Floats, Indices]:
-    """Return the weights (k, 4) that interpolate four columns at `index` (k,), and the first columns (k,).
+    """Return weights (k, 4) for interpolation between four columns of nodes, and the first columns (k,).
 
-    `low` and `high` (k,) are the columns at the nearest corners; columns beyond them have zero weights.
+    `index` (k,) are positions between columns. No column beyond `low` and `high` (k,) has a weight.
     """
     first = np.clip(index.astype(np.intp) - 1, low, np.maximum(high - 3, low))
     width = np.minimum(high - first, 3)

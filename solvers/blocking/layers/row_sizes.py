@@ -68,7 +68,7 @@ class RowSizes:
         return cls(loop, arcs, length, gap, on, first)
 
     def thickness(self, scale: float, settings: LayerSettings) -> Floats:
-        """Return the thickness (n,) of layers whose cells grow until they are square, limited by the gap.
+        """Return the thickness (n,) of layers: cells grow until they are square, unless a gap is too narrow.
 
         `scale` is a factor on the cell lengths along the wall.
         """

@@ -67,7 +67,7 @@ class MeshONetHard(Architecture):
         return {**fixed, "fixed/modes": _modes(targets, self.modes)} if self.modes else fixed
 
     def seen(self, xp: Any, points: Any) -> Any:
-        """Return the lift and the factor B at `points` (p, 2); with `modes`, return the points alone."""
+        """Return the lift and the factor B of the class at `points` (p, 2); with `modes`, only `points`."""
         if self.modes:
             return points
         xi, eta = points[:, :1], points[:, 1:]

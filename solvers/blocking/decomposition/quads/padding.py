@@ -44,7 +44,7 @@ def spans_to_pad(mesh: QuadMesh, spans: Sequence[Span]) -> list[Span]:
 
 
 def pad(mesh: QuadMesh, loops: Sequence[int]) -> QuadMesh:
-    """Return the mesh with a ring of quads added along each boundary loop in `loops`, inside it.
+    """Return the mesh with a ring of quads added along each boundary loop in `loops`, inside the domain.
 
     >>> from meshonet.geometry.domain.domain import Domain
     >>> from meshonet.geometry.layout.quad_mesh import Places

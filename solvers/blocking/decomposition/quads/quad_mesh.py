@@ -21,7 +21,7 @@ LOOP = 4  # smallest number of cells along a closed wall
 
 
 def quad_mesh(seamless: SeamlessMap, cells: int = 900, sizes: SizeMetric | None = None) -> QuadMesh:
-    """Return a conforming mesh of about `cells` quads along lines of the map; its singularities are nodes.
+    """Return a conforming mesh of about `cells` quads, whose edges follow coordinate lines of the map.
 
     If `sizes` (target edge lengths) are given, `cells` is ignored. Cells may be folded.
 
