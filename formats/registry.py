@@ -51,7 +51,7 @@ def format_named(name: str) -> Format:
 
 
 def format_of(source: Source, fmt: str | None = None) -> Format:
-    """Return the format `fmt`, or the format of the extension or content. Raises InputError: unknown."""
+    """Return the format `fmt` or, by default, of the extension or content. Raises InputError if unknown."""
     if fmt:
         return format_named(fmt)
     claimed = BY_SUFFIX.get(source.suffix, [])

@@ -45,7 +45,7 @@ class Solution:
     method : name of the method: ``tfi``, ``winslow``, ``operator`` ...
     model : name of the neural operator, if one was used.
     outcome : how the computation ended.
-    residual : norm of the residual relative to that of the TFI grid, if the method has one.
+    residual : norm of the residual, divided by the norm for the TFI grid, if the method has one.
     cycles : number of cycles on the finest level, if the method has them.
     path : stages after the method itself, such as ``("repair",)``.
     seconds : wall-clock seconds by stage.

@@ -16,8 +16,8 @@ def facts_of(grid: Grid, block: int = 0, number: int = 0) -> dict[str, list[str]
     """Return topology, name, patches and provenance of a block as lists of texts by key, for `grid_with`.
 
     `block` is the index of the block in `grid`, `number` the index of the grid in the file. Only block 0 has
-    connections and provenance. The text of a patch is ``side start stop name``; more keys have its kind and
-    its second range if needed. An extruded grid has the texts of its planar grid.
+    connections and provenance. The text of a patch is ``side start stop name``; if needed, other keys have
+    its kind and its range along a second direction. An extruded grid has the texts of its planar grid.
     """
     space = grid.form != "plane"
     if space:

@@ -40,7 +40,7 @@ def matched(connection: Connection, blocks: Sequence[Block]) -> Connection:
 
 
 def like_others(connection: Connection, motions: list[Motion]) -> Connection:
-    """Return a periodic connection with one of `motions` that nearly equals its own motion.
+    """Return a periodic connection, its motion replaced by the one of `motions` that nearly equals it.
 
     Without such a motion its own is kept, and added to `motions`. Nearly equal motions thus become identical.
     """

@@ -17,7 +17,7 @@ from meshonet.geometry.quality.metrics import metrics_of as metrics_of_cells
 
 
 def write_metrics(path: Path, grids: Iterable[Grid], *, many: bool = False) -> None:
-    """Write the only grid of `grids` and its quality metrics as ``.vts``, or with `many` as ``.vtm``.
+    """Write grids and quality metrics: with `many` all grids as ``.vtm``, else a single grid as ``.vts``.
 
     Raises InputError if a grid with several blocks is to be written as ``.vts``.
     """

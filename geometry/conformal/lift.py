@@ -83,9 +83,9 @@ def mirrored(nodes: Floats) -> Complexes:
 def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, tuple[int, ...]]:
     """Return the conformal map of a body, its wall (n,) mapped to the strip, and the indices of its corners.
 
-    `wall` (n,) runs counter-clockwise from the trailing edge, without its repeated first node. Corners of a
-    blunt trailing edge are straightened one after another, with `swap` the second first. A mirrored body
-    needs this for the mirrored result.
+    `wall` (n,) runs counter-clockwise from the trailing edge, without its repeated first node. The corners of
+    a blunt trailing edge are straightened one after another, with `swap` in the opposite order. The result
+    for a mirrored body is the mirrored result if `swap` is inverted.
 
     Raises InputError: fewer than 8 nodes, or a wall that does not wind once around its middle.
     """

@@ -105,10 +105,10 @@ def open_slopes(
 ) -> tuple[Floats, Floats]:
     """Return the slopes (intervals, d) at the start and at the end of each interval of an open curve.
 
-    Between neighbouring `stops` (indices of points, with the first and the last) there is a spline. `chord`
-    (intervals, d) are the vectors between points, `h` (intervals,) their lengths. Where `held` (2, intervals,
-    d) is finite, it is the slope at an end of a spline. Elsewhere the outer interval is a parabola. All
-    splines are solved as one tridiagonal system.
+    A spline joins each of the `stops` (indices of points, with the first and the last) to the next. `chord`
+    (intervals, d) are the vectors between points, `h` (intervals,) their lengths. `held` (2, intervals, d)
+    has slopes at starts and ends of intervals, of which those at ends of splines are kept if finite. Without
+    such a slope, the outer interval is a parabola.
     """
     delta = chord / h[:, None]
     doubled = np.zeros(len(h) + 1, dtype=np.intp)

@@ -91,7 +91,7 @@ def worst_cells_of(grid: Grid, limit: int = 10) -> list[BadCell]:
 
 
 def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
-    """Return the quality of `grid`; two cells on both sides of a connection count as neighbours.
+    """Return the quality of `grid`; cells on both sides of a connection count as neighbours.
 
     `percentiles` adds the 1st and the 99th percentile of every metric, which takes four times as long as the
     rest.

@@ -31,7 +31,7 @@ def count_folded_solids(nodes: Floats, test: int = CORNERS) -> int:
 
 
 def folded_solids(nodes: Floats, test: int = CORNERS) -> NDArray[np.int64]:
-    """Return the ascending indices (n, 3) of cells of `nodes` (ni, nj, nk, 3) that are folded by a test."""
+    """Return the ascending indices (n, 3) of cells of `nodes` (ni, nj, nk, 3) that `test` finds folded."""
     nodes = as_planar(nodes)
     rows = _folded_rows(nodes, test)
     places = np.empty((int(rows.sum()), 3), dtype=np.int64)

@@ -124,7 +124,7 @@ class Sampling:
             raise InputError(problem, "give four point indices")
 
     def corner_steps(self, cells: int) -> tuple[int, ...]:
-        """Return numbers k, best first, by which node indices of corners on a wall of `cells` are divisible.
+        """Return numbers k, best first; corners on a wall of `cells` are at node indices divisible by k.
 
         >>> Sampling().corner_steps(404), Sampling().corner_steps(398), Sampling(refined=8).corner_steps(400)
         ((4, 2, 1), (2, 1), (8,))

@@ -42,7 +42,7 @@ def arcs_by_curvature(
     The cell size h combines four sizes, 1/h⁴ = Σ 1/hₖ⁴. The first two start at the trailing and at the
     leading edge and increase by `GROWTH` times the distance. The third is the length on which the curve turns
     by `TURN`. The fourth is a constant that gives the requested number of cells. If cells are too few, first
-    the growth is increased, then sizes by curvature and at the leading edge, at last all sizes.
+    the growth is increased, then the size at the leading edge and the third size, at last all sizes.
 
     Parameters
     ----------

@@ -134,7 +134,7 @@ def _rows(cascade: Cascade, layout: Layout, metric: SizeMetric) -> list[Rows]:
 
 
 def straight_rows(cascade: Cascade) -> list[tuple[int, float, float]]:
-    """Return loop index, length and axial direction (-1 or 1) of the straight rows of cells at the ends."""
+    """Return loop index, length and direction (-1 or 1) of the straight rows of cells at inlet and outlet."""
     passage = cascade.passage
     axial = passage.axial(passage.front.curve.points)
     before = cascade.ends[0] - float(axial.min() - passage.inlet)

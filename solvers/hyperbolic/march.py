@@ -95,7 +95,7 @@ def hyperbolic(
 
 
 def marched(front: Front, rows: int, layers: MarchLayers) -> Floats:
-    """Return the nodes (ni, nj, 2) of a march with `rows` rows of cells, or more if `layers` is free.
+    """Return the nodes (ni, nj, 2) of a march with `rows` rows of cells, or with more if `layers` permits it.
 
     Raises InputError if rows are too few, and SolverError if no attempt gives finite nodes.
     """

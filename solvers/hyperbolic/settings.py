@@ -45,10 +45,10 @@ OPEN_ATTEMPTS = (
 
 
 def attempts_around_base(ratio: float, *, concave: bool) -> tuple[MarchSettings, ...]:
-    """Return the settings for C grids around a blunt base, in the order in which they are tried.
+    """Return the settings for C grids around a blunt trailing edge, in the order in which they are tried.
 
     `ratio` is the growth ratio away from the wall. The larger it is, the more the lines from corners of the
-    base must spread. Lines from `concave` corners converge and need more smoothing.
+    trailing edge must spread. Lines from `concave` corners converge and need more smoothing.
     """
     even = max(0.05, 0.5 * (ratio - 1.0) - 0.05)
     first = replace(OPEN_ATTEMPTS[0], even=even)

@@ -144,7 +144,7 @@ def evened_loops(
 ) -> Layout:
     """Return the layout with nodes moved along loops, so that steps between neighbours grow slowly.
 
-    `measures` has functions, such as arc length, of which steps are differences, by loop index. `limit` and
+    `measures` has by loop index the functions, such as arc length, whose differences are steps. `limit` and
     `most` are as in `evened_places`. Corners stay. If cells would fold, `layout` is returned unchanged.
     """
     mesh = layout.mesh

@@ -80,7 +80,7 @@ def judged(
 ) -> Result:
     """Return a solution with the quality of its grid; the time of the measurement is added to `seconds`.
 
-    Notes say where cells grow by more than a prescribed ratio; without that ratio, where neighbouring cells
+    Notes say where cells grow by more than a prescribed ratio; without such a ratio, where neighbouring cells
     along a wall differ by more than `JUMP`. Raises NoValidGridError, with the text `remedy`, if cells are
     folded and the request does not allow that.
     """

@@ -129,7 +129,7 @@ class Chords:
         return int((along[:, 0] * along[:, 2]).sum())
 
     def along_loops(self, counts: Indices) -> Indices:
-        """Return the number of wall cells (loops,) of each boundary loop, for `counts` (chords,)."""
+        """Return the wall cells (loops,) of each boundary loop, if chords (rows of blocks) have `counts`."""
         mesh = self.layout.mesh
         along = np.zeros(len(mesh.domain.loops), dtype=np.intp)
         for edge in np.flatnonzero(self.wall):

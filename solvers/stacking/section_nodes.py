@@ -41,7 +41,7 @@ class Around:
 
     @property
     def nodes(self) -> int:
-        """Number of nodes around, including the repeated first one."""
+        """Number of nodes around a section, including the repeated first one."""
         return 2 * self.cells + self.base + 1
 
     def law(self, height: float, length: float, nose: float | None = None) -> Callable[[Floats], Floats]:

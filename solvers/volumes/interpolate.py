@@ -20,8 +20,8 @@ SAME = 1e-9  # largest difference of laws that count as equal
 def uniform_laws(counts: tuple[int, int, int]) -> Laws:
     """Return laws (parameters from 0 to 1 along edges) with equal steps; `counts` are the node counts.
 
-    The law of a direction has a row for each of its four edges (4, n). In the other two directions, these are
-    at (low, low), (high, low), (low, high) and (high, high).
+    The law (4, n) of a direction has a row for each edge along this direction. In the other two directions,
+    the edges are at (low, low), (high, low), (low, high) and (high, high).
     """
     xi, eta, zeta = (np.tile(np.linspace(0.0, 1.0, n), (4, 1)) for n in counts)
     return xi, eta, zeta

@@ -135,7 +135,7 @@ def _positive_part(blocks: Tensor) -> Tensor:
 
 
 def aspect_of(nodes: Tensor) -> Tensor:
-    """Return for each grid the mean spacing of boundary nodes along eta, divided by that along xi."""
+    """Return for each grid the mean spacing of boundary nodes along eta, over the mean spacing along xi."""
     walls, sides = nodes[..., :: nodes.shape[3] - 1], nodes[:, :, :: nodes.shape[2] - 1]
     along, across = walls.diff(dim=2).square().mean((1, 2, 3)), sides.diff(dim=3).square().mean((1, 2, 3))
     return torch.sqrt(across / along)

@@ -63,7 +63,7 @@ class BaseComplex:
     def side_lengths(self, unit: Floats | None = None) -> Floats:
         """Return the lengths (b, 4) of the south, north, west and east side of each block.
 
-        `unit` (e,), if given, has for each edge of the mesh the length in which that edge is measured.
+        `unit` (e,), if given, has a divisor for the length of each edge of the mesh.
         """
         edge, first, _ = self.sides
         length = self.mesh.edge_lengths

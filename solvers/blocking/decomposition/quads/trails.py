@@ -40,7 +40,7 @@ class Trails:
         return float(self.length[self.first[trail + 1] + trail])
 
     def at_vertex(self, vertex: int) -> tuple[int, float]:
-        """Return the index of the trail (line in the map) through a wall vertex, and its length up to it."""
+        """Return the index of the trail (line in the map) through a wall vertex, and the length before it."""
         return self._on_piece(self.vertex == vertex, 0.0)
 
     def at_edge(self, face: int, edge: int, part: float) -> tuple[int, float]:
