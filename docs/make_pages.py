@@ -256,8 +256,8 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "In variational grids the mean and the maximum of the cells' largest angles are smaller than in\n"
-        f"Winslow's grids. The network reaches {100 * gain['mean_gain']:.0f} % of this reduction of the mean, and "
+        "Variational grids have smaller means and maxima of the cells' largest angles than Winslow's grids.\n"
+        f"The network reaches {100 * gain['mean_gain']:.0f} % of this reduction of the mean, and "
         f"{100 * gain['max_gain']:.0f} % of that of the maximum.",
     ]
     return lines
