@@ -93,7 +93,7 @@ def meant(word: str, known: Iterable[str], likeness: float = 0.6) -> str:
 
 @contextmanager
 def in_source(name: str) -> Iterator[None]:
-    """Within the ``with`` block, set `name` as the source of input errors without a source."""
+    """Within the ``with`` block, input errors without a source get the source `name`."""
     try:
         yield
     except InputError as error:
@@ -103,7 +103,7 @@ def in_source(name: str) -> Iterator[None]:
 
 @contextmanager
 def in_place(place: str) -> Iterator[None]:
-    """Within the ``with`` block, set `place` as the place of input errors without a place."""
+    """Within the ``with`` block, input errors without a place get this `place`."""
     try:
         yield
     except InputError as error:

@@ -23,7 +23,7 @@ def cells_of(number: Indices) -> Indices:
 
 
 def cell_numbers(counts: Sequence[tuple[int, ...]]) -> list[Indices]:
-    """Return cell numbers, from 0 through all blocks, for blocks of these node counts; i varies fastest."""
+    """Return the cell numbers of blocks with node `counts`, from 0 through all blocks; i varies fastest."""
     shapes = [tuple(n - 1 for n in count) for count in counts]
     ends = np.cumsum([0, *(int(np.prod(shape)) for shape in shapes)])
     return [

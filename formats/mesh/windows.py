@@ -57,7 +57,7 @@ class SidePart(NamedTuple):
 
 
 def part_of(window: FaceWindow, lattices: Sequence[IndexedNodes]) -> SidePart | None:
-    """Return the range of a side that a window (rectangle of nodes) covers. Raises InputError: no such range.
+    """Return the range of a side that a window (node rectangle) covers. Raises InputError: outside blocks.
 
     Returns None if the window is not on a single side, such as an edge of a volume.
     """

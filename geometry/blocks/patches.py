@@ -39,7 +39,7 @@ def kind_of(name: str, otherwise: Kind = "other") -> Kind:
 
 
 def may_be_wall(name: str, kind: Kind = "other") -> bool:
-    """Return whether a patch may be a wall with layers: neither its kind nor its name says the contrary.
+    """Return whether a patch may be a wall with layers, judged by its kind and its name.
 
     >>> [may_be_wall(name) for name in ("wall", "ceiling", "inlet", "axis")]
     [True, True, False, False]
@@ -52,9 +52,9 @@ def may_be_wall(name: str, kind: Kind = "other") -> bool:
 class Patch:
     """A named part of a side of a block: nodes `start` to `stop`, both included.
 
-    Nodes are counted along i on south and north, along j on west and east. On a side of a volume, they are
-    counted along its first direction; `across` is the first and last node along its second, or None for all.
-    The default kind of boundary is derived from the name.
+    Nodes are counted along i on south and north, along j on west and east. On sides of volumes, they are
+    counted along the side's first direction; `across` is the first and the last node along its second
+    direction, or None for all nodes. The default kind of boundary is derived from the name.
     """
 
     name: str
@@ -76,7 +76,7 @@ class Patch:
 
     @property
     def may_be_wall(self) -> bool:
-        """Whether the patch may be a wall: neither its kind nor its name says the contrary."""
+        """Whether the patch may be a wall, judged by its kind and its name."""
         return may_be_wall(self.name, self.kind)
 
     def range(self, counts: tuple[int, ...]) -> Range:

@@ -94,9 +94,9 @@ def hexagon(angle: float, ni: int, nj: int) -> Boundary:
 def wrench(opening: float, ni: int, nj: int) -> Boundary:
     """Case 3: return a unit square with a notch of width `opening` in its top, like the jaw of a wrench.
 
-    The notch is centred at x = 1/2 and reaches from y = 1 down to 0.6. The tips on both sides of the notch
-    are at y = 1.15, at a distance of 0.05 in x. Elliptic grids fold at the lower corners of the notch. The
-    indices of nodes at corners do not depend on `opening`.
+    The notch is centred at x = 1/2 and reaches from y = 1 down to 0.6. The tips on both sides are at y =
+    1.15, 0.05 beside the notch. Elliptic grids fold at the lower corners of the notch. The indices of nodes
+    at corners do not depend on `opening`.
     """
     south, north = polyline([(0.0, 0.0), (1.0, 0.0)], ni), polyline(_jaw(opening), ni, like=_jaw(0.3))
     return _upright(south, north, nj, f"wrench-{opening:.6g}")

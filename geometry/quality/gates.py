@@ -43,7 +43,7 @@ class Gate:
         return figure
 
     def broken(self, figures: "Figures", more: Mapping[str, Figure] = NO_MORE) -> str | None:
-        """Return a message if the grid fails by this gate, else None. Raises InputError as in `figure`."""
+        """Return a message if the grid fails by this gate, else None. Raises InputError: no such figure."""
         figure = self.figure(figures, more)
         if not beyond(figure.value, self.compare, self.limit):
             return None

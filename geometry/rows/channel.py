@@ -42,7 +42,7 @@ class MeridionalMap:
 
     @property
     def length(self) -> float:
-        """Length of the channel in the coordinate m', which is 0 at the inlet."""
+        """Length of the channel in the coordinate m', the integral of arc length divided by radius."""
         return float(self.forward.values[-1])
 
 

@@ -138,7 +138,7 @@ class BladeProfile:
         )
 
     def sharpness(self, trailing: bool) -> tuple[float, float]:
-        """Return the largest turn at a point of an edge, in radians, and the share of the two largest."""
+        """Return the largest turn at an edge, in radians, and the share of the two largest in all turns."""
         bend = np.abs(turning(self.curve.points, closed=True))
         edge = self.trailing if trailing else self.leading
         own = np.sort(bend[np.abs(self._off(self.curve.knots, edge)) < self._reach])

@@ -194,7 +194,7 @@ class Stack:
         return self.canted(nodes, z) if self.cants.any() else nodes
 
     def canted(self, nodes: Floats, z: Floats) -> Floats:
-        """Return `nodes` (m, ..., 3) of sections at `z` (m,), rotated by their cants at leading edges."""
+        """Return `nodes` (m, ..., 3) of sections at `z` (m,), rotated by cant angles at leading edges."""
         values = np.stack([np.array([section.y for section in self.sections]), self.cants], axis=1)
         y, cant = self.between_sections(values, z).reshape(len(z), *[1] * (nodes.ndim - 2), 2).T
         place = np.stack([y.T, z.reshape(y.T.shape)], axis=-1)

@@ -155,7 +155,7 @@ def first_within(steps: tuple[int, ...], most: float) -> int:
 
 
 def nodes_beside(cells: int, every: int) -> str:
-    """Return as text the node counts nearest to `cells` + 1 that give a multiple of `every` cells.
+    """Return as text the nearest node counts to `cells` + 1 with which cells are a multiple of `every`.
 
     >>> nodes_beside(49, 4), nodes_beside(3, 4)
     ('49 or 53', '5')

@@ -8,7 +8,7 @@ from meshonet.geometry.families.draw import Draw
 
 @dataclass(frozen=True)
 class DrawnInputs:
-    """Members of a family of shapes as inputs: all members, or the members of shard k of n."""
+    """Members of a family of shapes as inputs: all members, or the members in one of n shards."""
 
     draws: Sequence[Draw]
     shard: tuple[int, int] = (1, 1)

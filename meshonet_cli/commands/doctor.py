@@ -33,7 +33,7 @@ def _well(findings: "Sequence[Finding]") -> bool:
 
 
 def findings_text(findings: "Sequence[Finding]") -> str:
-    """Return findings as text, grouped, one in each line, with the number of problems."""
+    """Return findings as text, one in each line, in groups, then the number of problems."""
     lines: list[str] = []
     width = max(len(finding.name) for finding in findings)
     for group in dict.fromkeys(finding.group for finding in findings):

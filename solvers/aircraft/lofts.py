@@ -39,7 +39,7 @@ def section_loft(stack: Stack, unit: Floats) -> Loft:
 
 
 def fin_loft(fin: Fin, unit: Floats) -> Loft:
-    """Return lines along the span (y) of the half z >= 0 of a fin, from nose to trailing edge.
+    """Return lines along the span y, on the half z >= 0 of a fin, from nose to trailing edge.
 
     `unit` (sections, n, 2) are nodes around its sections, scaled to chord 1.
     """

@@ -107,7 +107,7 @@ class AircraftPlan:
 def plan_of(
     aircraft: Aircraft, request: AircraftRequest, space: BodyMap
 ) -> tuple[AircraftPlan, tuple[str, ...]]:
-    """Return the plan for the requested number of cells or of nodes around wings; return notes too.
+    """Return the plan that meets the requested number of cells, or of nodes around wings, and notes.
 
     Raises InputError as `AircraftPlan.of`.
     """

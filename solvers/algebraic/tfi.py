@@ -63,7 +63,7 @@ def parameters(edges: Four, blending: Blending) -> Four:
 
 
 def interpolate(x: Floats, y: Floats, edges: Four, along: Four) -> None:
-    """Fill `x` and `y` (ni, nj) from the `edges` south, north, west, east; `along` are their parameters."""
+    """Fill `x` and `y` (ni, nj) from the `edges` south, north, west, east with the parameters `along`."""
     south, north, west, east = (np.ascontiguousarray(edge.T) for edge in edges)
     xs, ys = ((south[k], north[k], west[k], east[k]) for k in (0, 1))
     fill(x, y, xs, ys, along, threads_for(x.size))

@@ -27,7 +27,7 @@ class EdgeNodes:
     points: Floats
 
     def along(self, use: EdgeUse) -> tuple[Floats, Floats]:
-        """Return the nodes in the order of `use`: coordinates (n, 2) on its face, and positions (n, 3)."""
+        """Return coordinates (n, 2) on the face and positions (n, 3) of the nodes, in the order of `use`."""
         places = use.trace(self.parts)
         return (places, self.points) if use.forward else (places[::-1], self.points[::-1])
 

@@ -95,7 +95,7 @@ def listener_of(nodes: Floats) -> Callable[[int, float, float], None] | None:
 
 
 def in_cells(still: float, nodes: Floats) -> float:
-    """Return a tolerance in cell sizes; `still` is relative to √cells cell sizes of `nodes` (ni, nj, 2)."""
+    """Return a tolerance in cell sizes: `still` times √cells of the planar `nodes` (ni, nj, 2)."""
     return still * float(np.sqrt((nodes.shape[0] - 1) * (nodes.shape[1] - 1)))
 
 

@@ -43,7 +43,7 @@ def tables_of(
 ) -> HexTables:
     """Return the tables of a mesh for compiled code; `moves` (n,) is the mask of free nodes.
 
-    `lengths` are target lengths of cells. If `turned`, the longest direction of a block becomes its last.
+    `lengths` are target lengths of cells. If `turned`, each block's longest direction becomes its last one.
     """
     parts = [
         _part(wider, np.append(moves, False), wanted, sizes, turned)

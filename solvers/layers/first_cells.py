@@ -79,7 +79,7 @@ def check_fit(heights: Heights, boundary: Boundary) -> None:
 
 
 def cells_needed(length: float, first: float, last: float, heights: Heights) -> int:
-    """Return how many cells fill `length`, with end sizes `first`, `last` and growth up to `heights.growth`.
+    """Return how many cells fill `length` if the outermost are `first` and `last` long and growth is limited.
 
     Raises InputError if 100,000 cells are too few.
     """

@@ -25,7 +25,7 @@ def solved(method: Method, boundary: Boundary, start: Grid | None) -> Solution:
 
 @dataclass(frozen=True)
 class Each(OneByOne):
-    """A method that calls a function for each boundary. Raises InputError: settings unknown to it."""
+    """A method that calls a function for each boundary. Raises InputError: unknown settings."""
 
     name: str  # in `METHODS`
     # a function of a boundary, its settings and perhaps ``initial``, a grid to start from; or ``module:name``

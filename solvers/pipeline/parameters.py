@@ -57,7 +57,7 @@ def grid_request(method: str = "best", *, res: Counts | None = None, **parameter
 
 
 def sampling_of(res: Counts | None, parameters: dict[str, Any]) -> Sampling:
-    """Return the sampling with node counts `res`; its other fields are removed from `parameters`."""
+    """Return the sampling with node counts `res`; its other fields are taken out of `parameters`."""
     counts = counted(res, parameters)
     return Sampling(**counts, **{name: parameters.pop(name) for name in SAMPLED if name in parameters})
 

@@ -122,7 +122,7 @@ class Spacing:
 
     @classmethod
     def of(cls, lengths: tuple[float, float], ends: Ends, growth: float, cells: int) -> Self:
-        """Return the spacing for lines between the two `lengths`; cells grow inwards from `ends`."""
+        """Return the spacing for line lengths between the two `lengths`; cells grow inwards from `ends`."""
         known = np.linspace(*lengths, _LENGTHS if lengths[1] > lengths[0] * (1.0 + 1e-9) else 1)
         return cls(lengths, (two_sided(known, ends, growth, cells) / known[:, None]).T)
 

@@ -44,7 +44,7 @@ def wing_surface(stack: Stack, settings: WingSurface | None = None) -> tuple[Gri
     """Return the surface patches of a wing, with outward normals, and notes on changes.
 
     The first block goes around the sections, upper side first, and along the span. A round or flat tip adds
-    two blocks, the ring and the core of its cap. The edge at the root is the patch ``symmetry``.
+    two blocks that close it: a ring, and the core inside. The edge at the root is the patch ``symmetry``.
 
     Raises InputError if node counts are too small, or if outlines of sections intersect themselves.
     """

@@ -99,7 +99,7 @@ def _index(faces: SixFaces, side: Side, second: Side, at: int) -> list[int]:
 def closed_place(faces: SixFaces) -> Place | None:
     """Return i, j, k of an inner node for which there is no valid position; None if there is no such node.
 
-    Only nodes next to faces are tested: the given face restricts them (kernels/volumes/near_faces.c).
+    Only nodes next to faces are tested, since the faces restrict them (kernels/volumes/near_faces.c).
     """
     for sides, ranges in next_to_faces(faces.counts):
         walls = tuple((np.ascontiguousarray(getattr(faces, side)), *PLACES[side]) for side in sides)

@@ -27,7 +27,7 @@ _REACH = 8  # number of first and of last points among which the corners of a ba
 
 @dataclass(frozen=True, eq=False)
 class CleanSection:
-    """A clean closed polygon (n, 2), clockwise from a sharp trailing edge or the lower corner of a base.
+    """A clean closed polygon (n, 2), clockwise from a sharp trailing edge or from the lower corner of a base.
 
     The base (blunt trailing edge) is the segment from the last point, its upper corner, to the first.
     """

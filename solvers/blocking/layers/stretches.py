@@ -44,7 +44,7 @@ def layered_walls(domain: Domain, names: Collection[str] = ()) -> tuple[list[int
 
     `names` are the walls with layers. Without names, parts of `Domain.layered_loops` have layers if they may
     be walls by their names. Layers continue along an axis or symmetry line that continues a wall. Raises
-    InputError if no wall has layers, or if layers would end where the boundary is straight or turns away.
+    InputError if no wall has layers, or if layers would end elsewhere than at corners of about 90 degrees.
     """
     whole: list[int] = []
     stretches: list[Stretch] = []

@@ -246,7 +246,7 @@ class Counts:
 def wanted_counts(
     walls: WallLayers, rows: WallRows, chords: Chords, cells: int, size: float, before: Counts | None
 ) -> Counts:
-    """Return counts for about `cells` cells in total or, if `cells` is 0, for cells of the length `size`.
+    """Return cell counts for about `cells` cells in total or, if `cells` is 0, for cells of length `size`.
 
     `before` are the counts of the previous iteration, None in the first one.
     """

@@ -47,7 +47,7 @@ class WallRows:
     back: Bools
 
     def of_chords(self, chords: Chords) -> Indices:
-        """Return, for each chord (set of opposite edges), which row (chords,) its edges cross, or -1."""
+        """Return, for each chord (set of opposite edges), the index of the row that it crosses, or -1."""
         row = np.full(chords.count, -1, dtype=np.intp)
         row[chords.chord[chords.sides[:, 2]]] = self.across[:, 0]
         row[chords.chord[chords.sides[:, 0]]] = self.across[:, 1]

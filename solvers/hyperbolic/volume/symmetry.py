@@ -66,7 +66,7 @@ def closes_in(surface: Surface, plane: Plane) -> float:
 
 
 def symmetry_planes(surface: Surface, axis: str | None) -> tuple[tuple[Plane, ...], Indices]:
-    """Return the p planes normal to `axis` that contain open edges, and a mask (k,) of these edges for each.
+    """Return the p planes normal to `axis` that contain open edges, and a mask (p, k) of the edges in each.
 
     For `axis` see `symmetry_of`. Raises InputError if no open edge is in a plane normal to it.
     """

@@ -40,7 +40,7 @@ def unrolled(z: Any, centres: Any, xp: Any = np) -> tuple[Any, Any]:
 
 
 def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any = np) -> tuple[Any, Any, Any]:
-    """Return strips of `walls` (batch, m + 1, n), their centres (batch,), and a mask; see `unrolled`.
+    """Return `walls` (batch, m + 1, n) unrolled to strips, centres (batch,), and a mask (see `unrolled`).
 
     The centre is the centroid inside the body's closed curve `wall` (batch, ni). If the lines of `walls` do
     not wind exactly once around it, the centre is instead ``inside(walls[k, :-1, 0])``.

@@ -24,8 +24,8 @@ from meshonet.kernels._native import split_quads
 class BaseComplex:
     """Blocks of a quad mesh, the edges that bound them, and the chords (rows of blocks).
 
-    A chord is the set of all block sides that are reached from one side by repeated steps across a block to
-    its opposite side. All sides of a chord have the same number of cells.
+    A chord is the set of all block sides that are reached from one side by repeatedly crossing a block to the
+    opposite side. All sides of a chord have the same number of cells.
     """
 
     mesh: QuadMesh

@@ -46,7 +46,7 @@ def score(blocks: BaseComplex, price: float = PRICE, wanted: Floats | None = Non
 
 
 def size_spread(blocks: BaseComplex, wanted: Floats | None) -> float:
-    """Return how unequal block sides with the same number of cells are: the variance of log(length).
+    """Return how unequal block sides are in each row of blocks: the variance of log(length).
 
     Blocks are weighted by areas. Lengths are relative to the target lengths `wanted` (e,) of edges, if given.
     """

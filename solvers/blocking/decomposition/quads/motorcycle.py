@@ -50,7 +50,7 @@ class _Traced:
 
 
 def motorcycle_graph(seamless: SeamlessMap) -> MotorcycleGraph:
-    """Return the motorcycle graph of a map (lines from singular points), with lines that connect all walls.
+    """Return the lines from singular points of a map (motorcycle graph), and lines that connect all walls.
 
     Raises SolverError if a line does not end, or if a wall cannot be connected to the others.
     """

@@ -31,7 +31,7 @@ def images_of(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> Images
 
 
 def node_images(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> list[Indices]:
-    """Return, for each mirror of the mesh, the index of the mirror image of each node (n,)."""
+    """Return, for each mirror of the mesh, the indices (n,) of the nodes' mirror images."""
     return [to for _, to in images_of(mesh, mirrors)]
 
 
