@@ -75,7 +75,7 @@ class SparseMatrix:
     values: Floats  # values of the distinct entries, in the internal order of the pattern
 
     def times(self, x: Floats) -> Floats:
-        """Return the product of A and x, which is (n,) or (n, k)."""
+        """Return the product of A and a vector or matrix x, (n,) or (n, k)."""
         columns = np.ascontiguousarray(x, dtype=np.float64).reshape(self.pattern.size, -1)
         product = np.empty_like(columns)
         sparse_multiply(self.pattern.arrays, self.values, columns, product)

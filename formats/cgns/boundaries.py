@@ -32,7 +32,7 @@ _FACES = ("FaceCenter", "IFaceCenter", "JFaceCenter", "KFaceCenter", "EdgeCenter
 def conditions(base: Node, zone: Node, counts: Triple, block: int) -> Iterator[Face]:
     """Yield each face of a zone that has a boundary condition, named after the family of the condition.
 
-    `block` is the number of the zone. `counts` are its node counts; the third is 1 if it is planar.
+    `block` is the number of the zone. `counts` are the zone's node counts; the third is 1 in the plane.
     """
     for _, group in children(zone, "ZoneBC_t"):
         for title, condition in children(group, "BC_t"):

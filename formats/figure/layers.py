@@ -85,7 +85,7 @@ def padded(points: Floats, part: float) -> Box:
 
 
 class CellsInView(NamedTuple):
-    """Visible cells: `mask` (i1-i0, j1-j0) marks them among the cells with indices i0 to i1-1, j0 to j1-1."""
+    """Visible cells: a `mask` (i1-i0, j1-j0) of the cells with indices i0 to i1-1 and j0 to j1-1."""
 
     i0: int
     i1: int
@@ -161,7 +161,7 @@ def outline(ax: Axes, grid: Grid) -> None:
 
 
 def body(grid: Grid) -> Floats:
-    """Return the nodes (n, 2) of the south patch named ``wall``, or without it of the whole south side."""
+    """Return the nodes (n, 2) of the south patch ``wall``; if there is none, of the whole south side."""
     for part in grid.patches:
         if part.side == "south" and part.name == "wall":
             return grid.nodes[part.start : part.stop + 1, 0]

@@ -191,7 +191,7 @@ def own(group: h5py.Group, name: str) -> Any:
 
 
 def check_stored(data: h5py.Dataset, what: str, place: str = "") -> None:
-    """Raise InputError if far fewer bytes are stored than the shape of `data`, named `what`, needs."""
+    """Raise InputError if `data` has far fewer stored bytes than its shape needs; `what` is its name."""
     if data.size * data.dtype.itemsize > _DEFLATE_LIMIT * max(data.id.get_storage_size(), 1):
         problem = f"{what} claims shape {data.shape} but holds next to nothing"
         raise InputError(problem, "write the file again", place=place)

@@ -39,7 +39,7 @@ def read_grids(source: Source) -> Iterator[Grid]:
 
 
 def samples_read(source: Source, read: Callable[[Checked, int], T]) -> Iterator[Callable[[], T]]:
-    """Yield a function for each sample, which reads it: an invalid sample does not end the iteration."""
+    """Yield for each sample a function that reads it, so that an invalid sample does not end the loop."""
     with opened(source) as file:
         parts = shown_parts(file, source)
         if parts is None:

@@ -18,7 +18,7 @@ Indices = NDArray[np.int64]
 
 
 def collapsed_edges(grid: Grid) -> Iterator[tuple[int, Side, int, Bools]]:
-    """Yield block, side, direction (0 or 1), and the mask of edges of zero length in this direction."""
+    """Yield block, side, direction on the side (0 or 1), and a mask of edges of zero length along it."""
     for number, block in enumerate(grid.blocks):
         for side in sides_of(block.counts) if len(block.counts) == 3 else ():
             face = block.face(side)

@@ -117,7 +117,7 @@ class Map(NamedTuple):
 
 
 def read_map(path: Path, dims: Sequence[tuple[int, int, int]]) -> Map:
-    """Return the neutral map of blocks with node counts `dims`. Raises InputError: it does not fit."""
+    """Return the content of a neutral map file. Raises InputError: it does not fit the node counts `dims`."""
     name = printable(path.name)
     try:
         if path.stat().st_size > _MOST_BYTES:

@@ -112,11 +112,10 @@ def mostly_rows(head: bytes, counts: tuple[int, ...], least: int) -> bool:
 
 
 def table(lines: list[Line]) -> list[list[Line]]:
-    """Return the rows (lines of numbers) of a text in blocks; blank lines and prose separate blocks.
+    """Return the rows (lines of numbers) of a text, divided into blocks by blank lines and prose.
 
-    A line of two numbers followed by words counts as a row if it is next to a row. `left_out` reports ignored
-    lines. Raises InputError if a damaged line is before or after a row, without prose between them, or if a
-    broken line is between rows.
+    Two numbers followed by words are a row if they are next to a row. Raises InputError at a line among rows
+    that looks like a damaged row.
     """
     kinds: list[Kind] = ["blank", *map(attrgetter("kind"), lines), "blank"]
     blocks: list[list[Line]] = [[]]

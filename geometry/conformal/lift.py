@@ -70,7 +70,7 @@ class Lift:
         return self.centre + self.quarter * (zeta + 1.0 / zeta)
 
     def to_strip(self, z: Complexes) -> Complexes:
-        """Return the points w (n,), with continuous phi, of points `z` (n,) in order around the body."""
+        """Return the points w (n,) of the strip, without jumps, for points `z` (n,) around the body."""
         return _native.lift_to_strip(self, np.ascontiguousarray(z, complex))
 
 

@@ -44,7 +44,7 @@ class CubicTable:
         return np.concatenate([np.zeros_like(self.values[:1]), np.cumsum(pieces, axis=0)])
 
     def unit_cubics(self) -> Floats:
-        """Return coefficients (4, n - 1, ...), constant first, of each piece as a cubic in t from 0 to 1."""
+        """Return coefficients (4, n - 1, ...), ascending, of each interval's cubic in t from 0 to 1."""
         h = np.diff(self.knots).reshape(-1, *(1,) * (self.values.ndim - 1))
         begin, end = self.bends[:-1] * h**2, self.bends[1:] * h**2
         rise = np.diff(self.values, axis=0)

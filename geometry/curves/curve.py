@@ -24,8 +24,8 @@ _EDGES = np.arange(_STEPS + 1) / _STEPS  # ends of the parts
 class Curve:
     """A smooth curve with one cubic in each interval (`geometry.curves.spline`), bitwise through its points.
 
-    An open curve has at least 2 `points` (n, 2), a closed curve 3; its last point may repeat the first. The
-    tangent may jump at `corners` (indices of points); None detects them (`geometry.polygon.corners`).
+    An open curve has at least 2 `points` (n, 2), a closed curve at least 3. A closed curve may repeat its
+    first point at the end. The tangent may jump at `corners` (indices of points); None detects corners.
     Intervals in the mask `straight` (intervals,) are straight lines, and so are long intervals between
     rounded corners (`geometry.polygon.straights`). Raises InputError: too few points; a point that is not
     finite or equals its neighbour; a corner out of range.

@@ -120,7 +120,7 @@ class QuadMesh:
 
     @cached_property
     def irregular(self) -> Bools:
-        """Whether each node (n,) is irregular: not 4 quads meet there, or not 2 if it is on the boundary."""
+        """Whether each node (n,) is irregular: inside, not 4 quads meet there; on the boundary, not 2."""
         return self.valence != np.where(self.wall_nodes, 2, 4)
 
     @cached_property

@@ -34,7 +34,7 @@ class Cells:
 
 
 def solid_faces(grid: Grid, cells: Sequence[Cells]) -> Iterator[Values]:
-    """Yield angle, skewness and other values of faces, one index at a time; `cells` has an item per block."""
+    """Yield place, angle and skewness of groups of faces; `cells` has the measures of cells of each block."""
     for number, (block, own) in enumerate(zip(grid.blocks, cells, strict=True)):
         nodes = np.moveaxis(block.nodes, -1, 0)
         for axis in range(3):

@@ -25,7 +25,7 @@ _GATE = re.compile(r"\s*(\w+)(?:\.(\w+))?\s*(>=|<=|>|<)\s*([-+.\w]+)\s*", re.ASC
 
 @dataclass(frozen=True)
 class Gate:
-    """A condition by which a grid fails if it is met, written as ``METRIC[.STATISTIC] OPERATOR VALUE``."""
+    """A condition that makes a grid fail, written as ``METRIC[.STATISTIC] OPERATOR VALUE``."""
 
     text: str
     metric: str  # name of a metric, a count (`COUNTS`), one of `FIGURES`, or another that the caller allows
@@ -34,7 +34,7 @@ class Gate:
     limit: float  # limit, in the unit of the metric
 
     def figure(self, figures: "Figures", more: Mapping[str, Figure] = NO_MORE) -> Figure:
-        """Return the figure that the gate limits. Raises InputError: neither in `figures` nor in `more`."""
+        """Return the value that the gate limits. Raises InputError if it is not in `figures` or `more`."""
         figure = more.get(self.metric) or figures(self.metric, self.statistic)
         if figure is None:
             known = [name for name in COUNTS if figures(name)]

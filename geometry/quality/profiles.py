@@ -55,7 +55,7 @@ class CheckResult:
 
     @property
     def at(self) -> tuple[int, ...] | None:
-        """The node or cell of the figure."""
+        """Indices of the node or cell at which the value was found."""
         return self.figure.at if self.figure else None
 
     @property

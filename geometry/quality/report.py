@@ -34,7 +34,7 @@ Gates: TypeAlias = str | Sequence[str | Gate]  # gates, or their texts as in `pa
 
 @dataclass(frozen=True)
 class Comparison:
-    """Distances of nodes from their places in a reference grid, and ratios of the angles of both grids."""
+    """Distances of nodes from a reference grid's nodes, and ratios of angles to the reference's angles."""
 
     difference: Difference
     folded: int  # number of folded cells of the reference
@@ -50,12 +50,13 @@ class Comparison:
 
 @dataclass(frozen=True, eq=False)
 class QualityReport:
-    """The quality of a grid, with verdicts of profiles and a comparison if requested.
+    """The quality of a grid; if requested, verdicts of profiles (sets of limits) and a comparison.
 
-    ``report.quality["max_angle"]`` has ``min``, ``mean``, ``max``, ``p01``, ``p99`` and ``worst``, the worst
-    cell, of a metric. ``report.quality.folded`` is the number of folded cells. ``report.figures.wall_rows``
-    has heights and angles of first cells, ``report.figures.growth`` growth ratios. ``report.profile.passed``
-    is the verdict of the profiles. ``report.as_dict()`` has all that ``meshonet quality --json`` prints.
+    For each metric, such as ``report.quality["max_angle"]``, there are ``min``, ``mean``, ``max``, ``p01``,
+    ``p99`` and ``worst``, the worst cell. ``report.quality.folded`` is the number of folded cells.
+    ``report.figures.wall_rows`` has heights and angles of first cells, ``report.figures.growth`` growth
+    ratios. ``report.profile.passed`` is the verdict of the profiles. ``report.as_dict()`` has all that
+    ``meshonet quality --json`` prints.
 
     Parameters
     ----------

@@ -47,7 +47,7 @@ def _folded_rows(nodes: Floats, test: int) -> NDArray[np.int64]:
 
 
 def worst_solids(nodes: Floats, limit: int = 10, test: int = CORNERS) -> list[BadCell]:
-    """Return up to `limit` cells of `nodes` that are folded by a test, by ascending scaled Jacobian."""
+    """Return up to `limit` cells of `nodes` that are folded by the `test`, by ascending scaled Jacobian."""
     i, j, k = folded_solids(nodes, test)[:_MOST].T
     points = {(a, b, c): nodes[i + a, j + b, k + c] for a in (0, 1) for b in (0, 1) for c in (0, 1)}
     least = np.ones(len(i))

@@ -38,7 +38,7 @@ class BladeSurface:
     ----------
     profiles : two or more arrays (n, 3) of x, y, z, from hub to casing or back.
     channel : the channel in which the blade stands.
-    blades : number of blades; profiles whole pitches away from the others are rotated.
+    blades : number of blades; profiles on different blades are rotated to lie on one blade.
 
     The attribute `notes` says what was changed.
 

@@ -143,7 +143,7 @@ class Channel:
         columns_on_blade(self._tables, wall.reshape(-1, 2), first, flat)
 
     def places(self, points: Floats) -> tuple[Floats, Floats]:
-        """Return s and h (...) of points x, r (..., 2); outside the channel they are below 0 or above 1."""
+        """Return s (0 inlet, 1 outlet) and h (0 hub, 1 casing), both (...), of points x, r (..., 2)."""
         p = points.reshape(-1, 2)
         s = self._nearest_line(p)
         part = np.zeros(len(p))

@@ -90,7 +90,7 @@ class BladeProfile:
         return made
 
     def aligned(self, places: Floats) -> Self:
-        """Return the profile with its coordinate u redefined so that its corners are at u = `places` (c,)."""
+        """Return the profile with the coordinate u around it changed: corners are at u = `places` (c,)."""
         made, own = copy(self), self.corner_places()
         u = np.concatenate([_ENDS, places])
         way = np.concatenate([self._stops[1], np.interp(own, *self._stops)])
@@ -109,7 +109,7 @@ class BladeProfile:
         return shortest_ways(arcs - edge, length)
 
     def reshaped(self, plane: Floats, heights: Floats) -> Self:
-        """Return the profile through points with m' (see `MeridionalMap`), theta `plane`, and h `heights`."""
+        """Return the profile through points `plane` (n, 2), m' (`MeridionalMap`) and theta, at `heights`."""
         made = copy(self)
         made.__dict__ = {k: v for k, v in vars(self).items() if k not in ("thickness", "_heights")}
         made.heights = heights

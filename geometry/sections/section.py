@@ -95,10 +95,10 @@ class Section:
 
 
 class Fade(NamedTuple):
-    """Weight (n,) of each node: 1 gives the node twist and chord of the section, 0 no twist and `chord`."""
+    """Mixture of a section with the same section without twist and with another chord."""
 
-    weight: Floats
-    chord: float
+    weight: Floats  # (n,) share of the section as it is, at each node
+    chord: float  # the other chord
 
 
 def placed(unit: Floats, placement: Floats, fade: Fade | None = None) -> Floats:

@@ -64,8 +64,8 @@ class Outline:
         """Return the four edges of the domain, or the O boundary around the body.
 
         The spacing applies to each edge, or to the whole body. ``auto`` is ``conformal`` around a smooth body
-        (`geometry.conformal.spacing`), otherwise ``uniform``. ``tanh`` has end cells of a quarter of the mean
-        length. Corners are nodes. Raises InputError: a topology or spacing that does not apply; corner
+        (`geometry.conformal.spacing`), otherwise ``uniform``. With ``tanh``, end cells have a quarter of the
+        mean length. Corners are nodes. Raises InputError: a topology or spacing that does not apply; corner
         indices out of range.
         """
         topology = self.topology if sampling.topology == "auto" else sampling.topology

@@ -88,11 +88,7 @@ def wake_line(wall: Floats, axis: Floats, chord: float, length: float, first: fl
 
 
 def growing(first: float, length: float, cells: int) -> Floats:
-    """Return distances (cells + 1,) of nodes along a line, in units of `first`, up to `length`.
-
-    From cell k of n to the next, the logarithm of the cell size increases by g (1 - exp(-k/m)) (1 + b (2k/n -
-    1)). m and b are constants, and g follows from the length.
-    """
+    """Return distances (cells + 1,) of nodes along a `length` with growing cells, in units of `first`."""
     if first * cells >= length or cells < 2:
         return np.arange(cells + 1.0)
     try:

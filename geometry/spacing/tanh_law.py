@@ -52,8 +52,8 @@ class TanhLaw:
     def fitted(cls, cells: float, first: float, last: float, last_part: float = 1.0) -> Self:
         """Return the law of `cells` cells whose first and last step are `first` and `last`, to within 1e-6.
 
-        The fraction `last_part` (1 or 0.5) of the last cell lies before s = 1. With 0.5, `cells` is not an
-        integer. Raises InputError: the two steps are too large together, or too few cells are between them.
+        With `last_part` = 0.5, only half of the last cell lies before s = 1, and `cells` counts it as a half.
+        Raises InputError: the two steps are too large together, or too few cells are between them.
         """
         start, end = first * cells, last * cells
         for _ in range(60):

@@ -53,7 +53,7 @@ def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
 
 
 def edges_in(nodes: Floats, sides: Indices, plane: Plane, slack: float) -> Indices:
-    """Return whether the open edge, but not the whole quad, of each of `sides` (k, 4) is near a plane."""
+    """Return a mask (k,) of quads `sides` (k, 4) whose first two nodes are near a plane, but not all four."""
     near = np.abs(nodes[sides, plane.axis] - plane.value) <= slack
     return np.asarray(near[:, :2].all(axis=1) & ~near[:, 2:].all(axis=1))
 

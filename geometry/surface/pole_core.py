@@ -32,7 +32,7 @@ class PoleCore:
     ----------
     nodes : (b + 1, a + 1, 3) nodes of the core, oriented as the patch.
     rows : (r, m + 1, 3) lines of nodes around the pole, from the edge of the core outwards.
-    at : index of the first line around the pole that the patch keeps; it is the last of `rows`.
+    at : index, in the patch, of the last line of `rows`; the patch keeps its nodes from there on.
     """
 
     nodes: Floats

@@ -121,7 +121,7 @@ def deliver_parts(
     Parameters
     ----------
     written : called with the report of each successful member and the path of the file.
-    whole : whether all parts are made, not only the parts of a shard.
+    whole : whether this command makes all parts, not only a share of them.
 
     Raises OtherPartsError if existing parts belong to another dataset or must not be skipped.
     """

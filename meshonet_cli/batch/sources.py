@@ -47,9 +47,9 @@ def records(
     inputs: Iterable[Numbered | str | InputError | Draw], read: Callable[[Any], Iterator[Any]], *,
     alone: bool = False,
 ) -> Iterator[Item[Any]]:  # fmt: skip
-    """Yield the members of all inputs; an unreadable member yields an error as its content.
+    """Yield the members of all inputs; for an unreadable member, the item contains the error.
 
-    With `alone`, a member of a family counts as the only one of its input.
+    With `alone`, a member of a family is treated as the only member of an input.
     """
     count = 0
     for each in inputs:

@@ -73,7 +73,7 @@ class BodyMap:
         return np.clip(_between(self._arcs, along, np.zeros_like(s))[:, 0], 0.0, self.body.length)
 
     def around(self, places: Floats) -> Floats:
-        """Return the physical length (...) of one radian of theta at s, theta, zeta = `places` (..., 3)."""
+        """Return the length in space (...) of a radian of theta at `places` (..., 3): s, theta, zeta."""
         points = self.points(places)
         return np.hypot(points[..., 1] - self.body.y, points[..., 2])
 

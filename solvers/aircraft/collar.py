@@ -47,10 +47,10 @@ class Rectangle:
 
 
 def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
-    """Return the rectangle around a `section` (n, 2) of s and theta.
+    """Return a rectangle around a wing's `section` (n, 2), in the coordinates s and theta of `BodyMap`.
 
-    On each side it covers at most half of the distance from the section to the limits `within` of s and
-    theta. `scale` (2,) are the physical lengths of a unit of s and of theta.
+    On each side, it takes at most half of the space between the section and the limits `within`. `scale` (2,)
+    are the lengths in space of a unit of s and of theta.
     """
     (front, low), (back, high) = (section * scale).min(axis=0), (section * scale).max(axis=0)
     (begin, end), (bottom, top) = (
@@ -94,9 +94,9 @@ def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]
 
 
 def outer_loop(root: Floats, box: Rectangle, corners: tuple[int, int]) -> Floats:
-    """Return the nodes (n, 2) on the rectangle `box` at which lines from a section `root` (n, 2) end.
+    """Return nodes (n, 2) on the rectangle `box`, one for each node of the section `root` (n, 2) in it.
 
-    The root begins at the middle of the trailing edge, towards larger theta. `corners`: see `corner_nodes`.
+    `root` starts at the middle of the trailing edge, to larger theta. For `corners` see `corner_nodes`.
     """
     half = (len(root) - 1) // 2
     edge, nose = corners

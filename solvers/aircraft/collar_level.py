@@ -117,7 +117,7 @@ def planned_collar(
 
 @dataclass(frozen=True, eq=False)
 class CollarLevel:
-    """The collar (cells around a wing's section) on one level, and the lengths of cells next to it."""
+    """The collar (cells around a wing's section) on a surface around the body, and sizes of nearby cells."""
 
     # plan, hole: numbers of cells, and the section
     plan: CollarPlan
@@ -155,7 +155,7 @@ class CollarLevel:
 
     @property
     def sine(self) -> float:
-        """Smallest sine of the angles at the corners of the collar's cells."""
+        """Smallest sine of the corner angles of the collar's cells (cells around a wing's section)."""
         return least_sine(np.pad(self.ring[::-1], ((0, 0), (0, 0), (0, 1))))
 
     @property
@@ -166,7 +166,7 @@ class CollarLevel:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Lengths of the first cells before and behind the rectangle, as differences of s (`BodyMap`)."""
+        """Lengths along s (`BodyMap`) of the first cells before and behind the section's rectangle."""
         behind, before = outer_cells(self.hole.box, (self.plan.edge, self.plan.nose))
         unit = float(self.hole.scale[0])
         ahead, aft = (math.sqrt(a * b) for a, b in ((self.last[0], before), (self.last[3], behind)))

@@ -105,7 +105,7 @@ def planned_column(
 
 @dataclass(frozen=True, eq=False)
 class ColumnLevel:
-    """A column (the patches from keel to crown, around wing and fin) on one level."""
+    """A column (the patches from keel to crown, around wing and fin) on one surface around the body."""
 
     plan: ColumnPlan  # numbers of cells
     levels: tuple[CollarLevel, ...]  # the collars: of the wing, of the fin, or of both, the fin last
@@ -147,7 +147,7 @@ class ColumnLevel:
         return self.levels[0].low_and_top[0] if self.below is None else self.below
 
     def above(self) -> tuple[float, tuple[float, float]]:
-        """Return the physical distance from wing collar to fin collar, and the cell lengths at both ends."""
+        """Return the length in space between the cells around wing and fin, and the cell lengths there."""
         wing, fin = self.levels
         low, high = self._gap
         rho = 0.5 * float(wing.hole.scale[1] + fin.hole.scale[1])

@@ -60,7 +60,7 @@ def ordered(columns: Sequence[Sequence[int]], values: Sequence[Each]) -> list[Ea
 
 
 def grouped(columns: Sequence[Sequence[int]], values: Sequence[Each]) -> list[list[Each]]:
-    """Return `values`, given in the order of `columns` (groups of wings), as one list for each group."""
+    """Return `values`, one per wing in the order of `columns` (groups of wings), as a list for each group."""
     rest = iter(values)
     return [list(islice(rest, len(column))) for column in columns]
 

@@ -36,7 +36,7 @@ class LoftedMap(BodyMap):
         self._fading = min(1.0, _FADING / more) if more > 0.0 else 1.0
 
     def points(self, places: Floats) -> Floats:
-        """Return the points (..., 3) x, y, z at s, theta, zeta = `places` (..., 3)."""
+        """Return points x, y, z (..., 3) at `places` (..., 3): coordinates s, theta, zeta of `BodyMap`."""
         s, theta, zeta = np.moveaxis(places, -1, 0).reshape(3, -1)
         x, r = self.meridional(s, zeta).T
         r = np.maximum(r, 0.0)

@@ -35,7 +35,7 @@ _ENOUGH = 1.15  # ratio of the number of cells to the requested number from whic
 
 @dataclass(frozen=True, eq=False)
 class AircraftPlan:
-    """Plan of a grid: lines of wings, their sections on some levels, and numbers of cells."""
+    """Plan of an aircraft grid: wings' lines, their points on surfaces around the body, numbers of cells."""
 
     wings: tuple[WingLines, ...]  # lines of each wing, from nose to tail; a fin follows the wing below it
     sections: tuple[Floats, ...]  # (SAMPLES, n, 3) s, theta and zeta around each wing on the key levels

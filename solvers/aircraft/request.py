@@ -21,7 +21,7 @@ class AircraftRequest(StackRequest):
     def of(cls, **parameters: Any) -> Self:
         """Return a request with the parameters as its fields.
 
-        Raises InputError as `StackRequest`, for options that do not apply, and for both `cells` and `around`.
+        Raises InputError: an option that does not apply; both `cells` and `around`; also as `StackRequest`.
         """
         refuse_given(cls.what, {name: name in parameters for name in _OTHERS})
         if "cells" in parameters and "around" in parameters:

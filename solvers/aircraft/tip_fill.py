@@ -13,10 +13,10 @@ _MOST_ROWS = 200
 
 
 def tip_patches(loop: Floats, first: float) -> tuple[Floats, Floats]:
-    """Return the ring (n, rows + 1, 3) and the core (m, k, 3) that fill a closed `loop` (n, 3).
+    """Return patches inside a closed `loop` (n, 3): a ring (n, rows + 1, 3), and a core (m, k, 3) inside it.
 
-    The loop starts at the trailing edge and runs along the upper side first. Outermost cells are `first`
-    long, or shorter where the section is too thin.
+    The loop starts at the trailing edge and runs along the upper side first. The outermost cells of the ring
+    are `first` long, or shorter where the section is too thin.
     """
     ring, core = Cap(bulge=0.0).patches(loop)
     edge, inner = ring[:, 0], ring[:, -1]
@@ -44,9 +44,9 @@ def canted_tip_patches(loop: Floats, first: float, cant: float) -> tuple[Floats,
 
 
 def half_tip_patches(half: Floats, first: float) -> tuple[Floats, Floats]:
-    """Return half the patches inside the tip of a fin, on one side of the plane z = 0.
+    """Return half the ring and half the core that fill the tip of a fin, on one side of the plane z = 0.
 
-    `half` (n, 3) are nodes of half of the section, nose to trailing edge; `first` is as in `tip_patches`.
+    `half` (n, 3) are nodes of half of the section, from nose to trailing edge. For `first` see `tip_patches`.
     """
     flat = half[:, [0, 2, 1]]
     loop = np.concatenate([flat[::-1], flat[1:] * [1.0, -1.0, 1.0]])

@@ -42,9 +42,9 @@ def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: fl
 
 
 def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Floats:
-    """Return `points` (k, p, 3), moved so that lines of cells around a wing are normal to the span.
+    """Return nodes `points` (k, p, 3) of p lines, moved so that cells at a wing are normal to its span.
 
-    `ring` (n, m) are the indices of the lines around the wing. First cells are `first` high.
+    `ring` (n, m) has the indices of lines, n around the wing and m outwards. First cells are `first` high.
     """
     lines = np.moveaxis(points[:, ring], 2, 0)  # (m, k, n, 3), from the wing outwards
     wall, away = lines[0], (lines[1] - lines[0]) / first
@@ -109,10 +109,10 @@ def _chord(edge: Floats, wing: WingLines) -> float:
 
 
 def off_tip(points: Floats, cap: Indices, ring: Indices, wing: WingLines) -> Floats:
-    """Return `points` (k, p, 3) beyond a tip, moved so that the p lines leave the tip along normals.
+    """Return nodes `points` (k, p, 3) of p lines beyond a wing tip, moved so that lines start along normals.
 
-    `cap` (c,) are indices of lines that start on the tip. `ring` (n, m) are lines around the tip, which are
-    moved less the farther they are from it.
+    `cap` (c,) has the indices of lines that start on the tip, `ring` (n, m) of lines around the tip. Lines
+    around the tip move less the farther they are from the tip.
     """
     apart = arc_lengths(points[0, ring])
     fade = 1.0 - apart / apart[:, -1:]

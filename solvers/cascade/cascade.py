@@ -189,7 +189,7 @@ class Cascade:
         return replace(sizes, points=points, normals=normals, across=across, along=along)
 
     def check_reach(self, cells: int | None, cell_size: float | None) -> None:
-        """Raise InputError if the passage needs far more than `cells`, or too many cells of `cell_size`."""
+        """Raise InputError if the passage is far too long for `cells` cells, or for cells of `cell_size`."""
         largest = cell_size or abs(self.left) / ACROSS * COARSEST**0.5
         length = (1.0 + self.inlet + self.outlet) * self.chord
         most = MOST_CELLS if cell_size else min(MORE * (cells or CELLS), MOST_CELLS)

@@ -74,7 +74,7 @@ class PassageFlow:
         return cls(half, np.unwrap(angle), along + edge, points - phi)
 
     def to_places(self, places: Complexes) -> Complexes:
-        """Return the points ζ (n,) between the blades at which the complex potential G is `places` (n,)."""
+        """Return points ζ (n,) of `Passage.zeta` at which the flow's complex potential is `places` (n,)."""
         ratio = sinh(places + self.half) / sinh(places - self.half)
         return places + self.inside(np.asarray(0.5 * log(ratio)))
 

@@ -111,7 +111,10 @@ def decay(k: Any, T: Any, eta: Any, xp: Any = np) -> tuple[Any, Any]:
 
 
 def harmonic(wall: Any, far: Any, eta: Floats, xp: Any = np) -> Any:
-    """Return modes (..., 2 MODES + 1, len(eta)) of a harmonic function with modes `wall`, `far` on walls."""
+    """Return the Fourier modes (..., 2 MODES + 1, n) of a harmonic function across the strip, at `eta` (n,).
+
+    `wall` and `far` are its modes on the two walls of the strip.
+    """
     count, T = MODES + 1, (far - wall)[..., :1, None].real
     k = wavenumbers(wall, xp)[:count]  # k and -k decay alike
     near, away = decay(k, T, array_like(eta, wall, xp), xp)
@@ -137,8 +140,8 @@ def picard(
 ) -> tuple[Complexes, list[float]]:
     """Return the modes of F after at most `steps` Picard steps, and the largest change of F in each step.
 
-    A grid in the strip is w(theta, eta) = psi + i phi; F = w - i theta has the period 2 pi in theta. The
-    grid solves::
+    A grid in the strip is w(theta, eta) = psi + i phi; F = w - i theta has the period 2 pi in theta. With
+    derivatives by t = theta and e = eta, the grid solves::
 
         alpha w_tt - 2 beta w_te + gamma w_ee = 0
         alpha = |w_e|^2,  beta = Re(conj(w_t) w_e),  gamma = |w_t|^2

@@ -73,7 +73,7 @@ class Follow:
 
     @classmethod
     def of(cls, table: NodeTable, moved: Bools) -> Self:
-        """Return the map for the nodes `table`; `moved` (n,) marks nodes whose new positions are given."""
+        """Return the map for the nodes `table`; `moved` (n,) marks boundary nodes with new positions."""
         nodes, sources = table.nodes, sources_of(table, moved)
         near = _near(nodes[moved], nodes[sources.fixed])
         held = np.union1d(np.flatnonzero(moved), sources.fixed)

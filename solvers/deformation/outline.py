@@ -113,7 +113,7 @@ def _on_curve(wall: Floats, new: Curve) -> tuple[Floats, Notes]:
 
 
 def on_line(wall: Floats, points: Floats) -> tuple[Floats, Notes]:
-    """Move the nodes of an open `wall` (n, 2) to the curve through `points` (m, 2); return notes too."""
+    """Move the nodes of an open `wall` (n, 2) to the curve through `points` (m, 2); also return notes."""
     ends = points[[0, -1]]
     if norms(wall[[0, -1]] - ends).sum() > norms(wall[[0, -1]] - ends[::-1]).sum():
         points = points[::-1]

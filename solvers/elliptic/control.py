@@ -30,11 +30,11 @@ class Factors:
         return np.asarray(product(self.along.T, self.across))
 
     def kept(self, i: Indices, j: Indices) -> Factors:
-        """Return the factors only at the nodes whose indices are in `i` and `j`."""
+        """Return the function at the nodes whose first index is in `i` and whose second index is in `j`."""
         return Factors(np.ascontiguousarray(self.along[:, i]), np.ascontiguousarray(self.across[:, j]))
 
     def scaled(self, part: float) -> Factors:
-        """Return the factors of the sum multiplied by `part`."""
+        """Return the function multiplied by `part`."""
         return replace(self, along=part * self.along)
 
     def __add__(self, other: Factors) -> Factors:

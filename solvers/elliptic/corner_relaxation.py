@@ -54,7 +54,7 @@ def _part(direction: Direction, nodes: slice) -> tuple[Floats, Floats, Floats]:
 
 
 def reentrant(edges: Four) -> list[Corner]:
-    """Return (side, node index) of each re-entrant corner inside the `edges` south, north, west, east."""
+    """Return side and node index of each re-entrant corner of the edges south, north, west and east."""
     sharp: list[Corner] = []
     for side, edge in zip(("south", "north", "west", "east"), edges, strict=True):
         outwards = -1.0 if side in {"south", "east"} else 1.0
@@ -66,7 +66,7 @@ def reentrant(edges: Four) -> list[Corner]:
 def patches(
     level: MultigridLevel, xi: Direction, eta: Direction, corners: list[Corner], scratch: Floats
 ) -> list[CornerPatch]:
-    """Return a patch of `level` around each of `corners`, given by node indices of the finest level."""
+    """Return a patch of nodes of a multigrid `level` around each of `corners`, which `reentrant` found."""
     if min(xi.cells, eta.cells) < LEAST:
         return []
     return [CornerPatch(level, xi, eta, _window(xi, eta, side, index), scratch) for side, index in corners]

@@ -90,7 +90,7 @@ class Multigrid:
         return float(np.sqrt(level.residual(False) / level.x.size))
 
     def nested_iteration(self) -> float:
-        """Solve on coarser levels to fill the finest; return its residual after transfinite interpolation."""
+        """Fill the finest level from coarser levels; return the residual of its transfinite interpolation."""
         last = len(self.levels) - 1
         self.interpolate_edges(last)
         start = self.residual(last)

@@ -48,12 +48,7 @@ class Descent:
 
 
 def minimiser(ni: int, nj: int, periodic: bool, aspect: float, weights: Weights) -> VariationalDescent:
-    """Return the compiled minimisation for ni x nj nodes; if `periodic`, the last row repeats the first.
-
-    It is preconditioned by the Hessian on square cells of side 1, without the coupling of the displacements p
-    along xi and q along eta. For w and β of `weights`, the second variation is about (1-w) (‖∇p‖² + ‖∇q‖²) +
-    4 w (p_η² + q_ξ²) + 2 β (‖∇p_ξ‖² + ‖∇q_η‖²). In the last term ∇ is in units of the whole square.
-    """
+    """Return the compiled minimisation for ni x nj nodes; if `periodic`, the last row repeats the first."""
     rows, along = _fourier(ni - 1) if periodic else _sines(ni - 1)
     columns, across = _sines(nj - 1)
     along, across = along[:, None] * aspect, across[None] / aspect

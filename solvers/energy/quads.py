@@ -80,9 +80,10 @@ def minimise(
     problem: Problem, iterations: int, tolerance: float, steps: Sequence[tuple[float, float]],
     growth: tuple[float, float],
 ) -> QuadOptimum:  # fmt: skip
-    """Return the mesh of `problem` with its nodes at the minimum; other parameters as in `optimise`.
+    """Return the mesh of `problem` with its nodes at the minimum of a functional of cell shapes.
 
-    `steps` has the weights w and β of several functionals, which are minimised one after another.
+    `steps` has the weights w and β (see `optimise`) of functionals that are minimised in this order. Other
+    parameters are as in `optimise`.
     """
     low, done = problem.smallest(), 0
     if low <= 0.0:

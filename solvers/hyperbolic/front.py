@@ -78,7 +78,7 @@ class Front:
         return float(np.hypot(*(levels[:, -1].T - self._middle).T).min())
 
     def nodes(self, levels: Floats) -> Floats:
-        """Return m `levels` (2, m, n) as nodes (ni, m, 2) of a grid."""
+        """Return m marched `levels` (2, m, n) as nodes (ni, m, 2); ni is n + 1 in an O grid, else n."""
         n = levels.shape[2]
         nodes = planar_nodes(n + self._closed, levels.shape[1])
         nodes[:n] = levels.T

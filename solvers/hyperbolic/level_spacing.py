@@ -42,7 +42,7 @@ def sharpest_edge(ring: Floats) -> Edge | None:
 
 
 def fastest(nodes: Floats) -> Floats:
-    """Return the logarithm (nj - 2,) of the greatest growth at each inner level of `nodes` (ni, nj, 2)."""
+    """Return the logarithm (nj - 2,) of the greatest growth ratio at each inner j of `nodes` (ni, nj, 2)."""
     heights = norms(np.diff(nodes, axis=1))
     return np.asarray(log(heights[:, 1:] / heights[:, :-1]).max(axis=0))
 

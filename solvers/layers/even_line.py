@@ -53,8 +53,8 @@ class Measures:
     Parameters
     ----------
     arcs : (m,) positions along the curve, ascending.
-    values : (k, m) increasing values of the k measures at these positions, linear in between.
-    slack : (k,) for each measure, a factor on the limit of log(growth ratio).
+    values : (k, m) increasing values of k functions at these positions; they are linear in between.
+    slack : (k,) factor on the allowed log(growth ratio) of each function.
     """
 
     arcs: Floats

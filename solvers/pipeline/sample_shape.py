@@ -37,7 +37,7 @@ _TURNED = "xi runs along the walls with layers, which are the sides south and no
 def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainShape | SpatialShape:
     """Return the boundary of a shape; three-dimensional and multi-block shapes are returned unchanged.
 
-    For a C grid that keeps the blunt trailing edge of an airfoil, return the line around it and its wake.
+    For a C grid that keeps the blunt trailing edge of an airfoil, return the line around airfoil and wake.
     """
     if isinstance(shape, SpatialShape):
         return shape

@@ -61,7 +61,7 @@ class Chords:
         return cls(layout, tuple(edges), sides, turned, wall, partner, chord, count, images)
 
     def of_refined(self, layout: Layout) -> "Chords":
-        """Return the chords of `layout`, which has the same blocks but other numbers of cells."""
+        """Return the chords (sets of opposite edges) of `layout`: the same blocks with other cell counts."""
         return replace(Chords.of(layout), chord=self.chord, count=self.count)
 
     @cached_property
@@ -124,7 +124,7 @@ class Chords:
         return least
 
     def cells(self, counts: Indices) -> int:
-        """Return the total number of cells, if chord k has `counts`[k] cells along each of its edges."""
+        """Return the total number of cells if each edge in chord k (opposite edges) has `counts`[k] cells."""
         along = counts[self.chord[self.sides]]
         return int((along[:, 0] * along[:, 2]).sum())
 

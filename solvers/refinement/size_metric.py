@@ -65,7 +65,7 @@ class SizeMetric:
         return self.near(places, directions).length(self)
 
     def near(self, places: Floats, directions: Floats) -> Near:
-        """Return the part of the computation of `length` that does not depend on target lengths.
+        """Return the nearest points on walls and fronts, with distances and angles, as `length` needs them.
 
         `places` (m, 2) are the midpoints of edges, `directions` (m, 2) their directions.
         """

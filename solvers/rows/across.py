@@ -15,7 +15,7 @@ _FROM = -0.25  # least place: u = 0, the leading edge, is between others
 
 @dataclass(frozen=True, eq=False)
 class ChannelLines:
-    """Lines across the channel between two blades, as normal to layers as possible; averages of sections."""
+    """Lines across the channel between two blades, nearly normal to the layers; means over sections."""
 
     upper: Floats  # (n,) places u (see `SectionPlane`) on the upper side of a blade, from 0 to 0.5
     lower: Floats  # (n,) 1 - u of the opposite places, on the lower side of the next blade
@@ -50,7 +50,7 @@ class ChannelLines:
         return PlaceLinks(pairs, factors, scale * aside - (factors * u[pairs]).sum(axis=1))
 
     def leaning(self, u: Floats, pairs: Indices) -> float:
-        """Return the mean square of the lean (see `links`) of lines that join nodes `pairs` at places `u`."""
+        """Return the mean square lean (see `links`) of lines that join `pairs` of nodes at places `u`."""
         return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
     def weights(self, pairs: Floats) -> Floats:

@@ -47,10 +47,10 @@ class GapFill:
 
 
 def outline_sides(count: int, lead: int, aside: int) -> list[Indices]:
-    """Return the node indices of each of the four sides into which an outline of `count` nodes is divided.
+    """Return the node indices of the four sides into which a blade's outline of `count` nodes is divided.
 
-    Side 1 is around the trailing edge, side 3 around the leading edge, which is node `lead`. Both extend by
-    `aside` nodes to either side of the edge. Sides 0 and 2 are between them.
+    Side 1 is around the trailing edge, side 3 around the leading edge, node `lead`. Each of them has `aside`
+    cells before and `aside` cells after its edge. Sides 0 and 2 are between them.
     """
     m, half = aside, count // 2
     cuts = [m, half - m, half + m, count - m, count + m]

@@ -12,12 +12,12 @@ FARTHEST = 0.2
 
 
 def opposite_places(places: Floats, pairs: Indices, lines: ChannelLines) -> Floats:
-    """Return coordinates u (k,) of nodes clockwise around a blade; for each node at u there is one at 1 - u.
+    """Return places u (k,) of nodes clockwise around a blade; for each node at u there is one at 1 - u.
 
-    k is even. The leading and the trailing edge have nodes, so that blocks in a gap are not skewed. Each of
+    u is 0 at the leading edge, 0.5 at the trailing edge and 1 at the leading edge again. k is even. Each of
     `pairs` (p, 2) is a node of the upper and a node of the lower side, which a grid line across the channel
-    joins; the first pair is nearest to the leading edge. The node at the leading edge is chosen so that these
-    grid lines deviate least from `lines`. If possible, no node moves farther than `FARTHEST`.
+    joins; the first pair is nearest to the leading edge. These grid lines deviate from `lines` as little as
+    possible. If possible, no node moves farther than `FARTHEST`.
     """
     both = _both_sides(places)
     k, half = len(places), len(places) // 2

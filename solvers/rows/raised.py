@@ -78,15 +78,14 @@ def rises_of(
 def raise_layers(
     rises: Sequence[Rise], space: Floats, heights: Floats, ends: tuple[Indices, Indices, Floats], first: float
 ) -> None:
-    """Displace the nodes of columns, in place; first cells keep their exact heights.
+    """Raise or lower layers next to a narrow gap, in place; first cells keep their exact heights.
 
     Parameters
     ----------
     rises : the displacements.
-    space : (levels, k, rows, 3) x, y, z of the nodes.
-    heights : (levels, k) heights of the nodes on the blade.
-    ends : levels (indices along the span) at the ends of blade and gaps, levels next to these, and heights of
-        the cells in between.
+    space : (levels, k, rows, 3) nodes of k columns of layers, at levels (indices along the span).
+    heights : (levels, k) heights of the nodes on the blade, 0 at the hub and 1 at the casing.
+    ends : levels at which blade and gaps end; levels next to them; heights of the cells in between.
     first : height of first cells at the blade.
     """
     rows = space.shape[2]

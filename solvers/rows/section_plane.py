@@ -136,7 +136,7 @@ class SectionPlane:
         return np.interp(np.mod(arcs, self._walls[-1]), self._walls, np.append(self.places, 1.0))
 
     def front_arcs(self, u: Floats) -> Floats:
-        """Return arc lengths (n,) on the outer edge of the layers, where columns from `u` (n,) end."""
+        """Return arc lengths (n,) on the outer edge of the layers, opposite places `u` (n,) on the blade."""
         ring = self.cascade.ring
         length, start = self._walls[-1], ring.arcs[0]
         walls = np.append(ring.arcs, start + length)
@@ -146,7 +146,7 @@ class SectionPlane:
 
     @cached_property
     def across(self) -> tuple[Floats, Floats]:
-        """Fields `lower` and `slant` of the `ChannelLines` of this section alone."""
+        """The arrays `lower` (n,) and `slant` (n,) of `ChannelLines`, for this section only."""
         front, pitch = self.cascade.ring.front, np.array([0.0, self.cascade.pitch[1]])
         one, other = (front.at(self.front_arcs(u)) for u in (ON_SIDE, 1.0 - ON_SIDE))
         off = ((other + pitch).T[:, None] - one.T[:, :, None]) ** 2

@@ -27,9 +27,9 @@ class SpanLines:
 
     @classmethod
     def through(cls, values: Floats, degree: int | None = None) -> "SpanLines":
-        """Return the polynomials through values (k, n, ...) at ``key_heights(k)``.
+        """Return polynomials along the span through values (k, n, ...) at the k heights ``key_heights(k)``.
 
-        If `degree` is below k - 1, they are least-squares fits with half weight at both ends.
+        With a `degree` below k - 1, return least-squares fits in which both ends have half weight.
         """
         kept = _fit(len(values))[: len(values) if degree is None else degree + 1]
         return cls(_times(kept, values))

@@ -44,9 +44,9 @@ class SpanPlaces:
 
         Parameters
         ----------
-        planes : all sections.
-        places : (k,) places in the middle section, which the result resembles.
-        pairs : (p, 2) nodes on the upper and on the lower side, joined by lines across the channel.
+        planes : all sections along the span.
+        places : (k,) places in the middle section, from which the result deviates little.
+        pairs : (p, 2) nodes on upper and lower side that grid lines across the channel join.
         gaps : whether there is a gap at the hub, and at the casing.
         """
         corners, half = planes[0].corners, len(planes) // 2
@@ -154,15 +154,16 @@ def upright(
     ends: tuple[Floats, Floats], free: tuple[bool, bool], planes: Sequence[SectionPlane], pairs: Indices,
     fixed: Bools,
 ) -> tuple[Floats, Floats]:  # fmt: skip
-    """Return places (k,) of nodes around the blade, at hub and casing, changed so that lines lean less.
+    """Return places (k,) of nodes around a blade, at hub and casing, changed so that grid lines lean less.
 
-    Lines cross the channel to the next blade; lean is their angle to the normal. Nodes stay on their side of
-    the blade, and do not move if lines in the half of the span at a free end lean by at most `LEAN`.
+    Grid lines cross the channel to the next blade; their lean is their angle to the normal of the layers.
+    Nodes stay on their side of the blade. They move only if lines near a free end lean by more than `LEAN`.
 
     Parameters
     ----------
-    ends : given places (k,) at hub and casing.
-    free : whether the places at the hub may move, and at the casing.
+    ends : given places (k,) at the hub and at the casing.
+    free : whether places at the hub may move, and whether places at the casing may.
+    planes : sections of the blade along the span.
     pairs : (p, 2) the two nodes that each line joins, on the upper side and on the next blade's lower side.
     fixed : (k,) mask of nodes that do not move.
     """

@@ -80,7 +80,7 @@ class StackedRow:
 
     @property
     def bounds(self) -> list[tuple[int, int]]:
-        """First and last level of each zone of the span (blade and gaps)."""
+        """First and last level (index along the span) of each zone, which is a gap or the blade."""
         return list(zip(self.levels[:-1], self.levels[1:], strict=True))
 
     @property

@@ -29,7 +29,7 @@ class Zone:
 
 
 def section_cells(zones: Sequence[Zone], cells: int, growth: float) -> int:
-    """Return how many cells a section needs for about `cells` in the row; more if `growth` requires it."""
+    """Return the number of cells of a section for about `cells` in the blade row, but enough for `growth`."""
     return max(_needed(growth), int(cells / _sections(zones)))
 
 

@@ -16,9 +16,9 @@ ROWS = 200  # largest number of rows of layers
 def with_layers(mesh: QuadMesh, original: QuadMesh) -> tuple[QuadMesh, Bools]:
     """Return `mesh` with the layer heights of `original`, and a mask (n,) of the nodes in layers.
 
-    Both meshes have the same quadrilaterals. Layers are rows of `THIN` cells at the boundary. A node in a
-    layer moves along its grid line from the wall. Its new distance is the distance of the layer in `original`
-    at the same arc length of the wall. Nodes in layers of two walls stay.
+    Both meshes have the same quadrilaterals. Layers are rows of thin cells at the boundary. Their nodes are
+    moved along grid lines to the distance from the wall that the layer has in `original` at this place. Nodes
+    that are in layers of two walls stay.
     """
     lines = _lines(original)
     held = np.zeros(len(original.nodes), dtype=bool)

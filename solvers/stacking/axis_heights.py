@@ -23,7 +23,7 @@ _TIE = 1e-9  # so that a half is rounded alike on every processor
 def axis_heights(
     sections: Floats, nodes: int | None, panels: Sequence[int | None]
 ) -> tuple[Floats, tuple[str, ...]]:
-    """Return z (n,) of nodes along the axis, and notes; each height in `sections` is the z of a node.
+    """Return z (n,) of nodes along the axis, and notes; there is a node at each z in `sections`.
 
     `nodes` is the number of nodes, by default 49, or more if sections are uneven. `panels` has the number of
     cells between each section and the next, or None if it is free.

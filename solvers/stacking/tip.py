@@ -194,7 +194,7 @@ def _shifted(places: Floats, first: float, cell: float) -> Floats:
 
 
 def least_sine(nodes: Floats) -> float:
-    """Return the smallest sine of an angle of cells of a patch (n, m, 3), negative for cells facing -z."""
+    """Return the smallest sine of a cell's corner angles in a patch (n, m, 3); negative: a cell faces -z."""
     least = 1.0
     along, across = np.diff(nodes, axis=0), np.diff(nodes, axis=1)
     for a in (along[:, :-1], along[:, 1:]):

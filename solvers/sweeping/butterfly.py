@@ -81,10 +81,10 @@ class CrossSection:
 def planned(
     sections: Sequence[CrossSection], growth: float = GROWTH, rows: int | None = None, *, radial: bool = False
 ) -> FiveBlocks:
-    """Return one division for all sections, with a growth ratio of at most `growth`, or the least possible.
+    """Return one division for all sections, in which the growth ratio of cells is at most `growth`.
 
-    `rows` is the number of rows of the ring, by default the smallest that keeps to `growth`. `radial`, for
-    circles, aligns the lines of the ring with radii.
+    If that is impossible, the growth ratio is the least possible. `rows` is the number of rows of cells in
+    the ring, by default the smallest that suffices. `radial`, for circles, makes lines of the ring radial.
     """
     best, least = FiveBlocks(_SIZES[0], rows or 1), np.inf
     for core in _SIZES:

@@ -186,7 +186,7 @@ def _fewest(width: float, first: float, ratio: float) -> int:
 
 
 def end_fractions(ends: Floats, cells: int) -> Floats:
-    """Return m distributions (m, cells + 1) from 0 to 1 with both end steps `ends` (m,), at most 1/cells."""
+    """Return m distributions (m, cells + 1) from 0 to 1; both end steps are `ends` (m,), at most 1/cells."""
     out = np.zeros((len(ends), cells + 1))
     steps = np.empty(cells)
     for row, end in zip(out, ends.tolist(), strict=True):

@@ -60,10 +60,10 @@ def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
 
 
 def half_rounds(curve: Curve, end: float, cells: int) -> tuple[Floats, Floats]:
-    """Return distances (n + 1,) of nodes from the middle of a rounded base, on its lower and its upper half.
+    """Return distances (n + 1,) of nodes from the middle of a rounded base, for its lower and its upper half.
 
-    Cells are smaller where the curve turns more (on average over four cells). `curve` and `end` are the
-    results of `rounded_base`. `cells`, at least 3, is the number of cells on a half that turns by 90 degrees.
+    Cells are smaller where the curve turns more. `curve` and `end` are the results of `rounded_base`.
+    `cells`, at least 3, is the number of cells on a half that turns by 90 degrees.
     """
     per_cell = 64
     n = per_cell * cells  # on either half; index n is the middle
@@ -101,8 +101,7 @@ def _fillet(curve: Curve, begin: float, corner: float, end: float) -> Floats:
 def wedged_base(section: CleanSection, tangents: tuple[Floats, Floats]) -> CleanSection:
     """Return a blunt section closed by a wedge; the result starts at the tip of the wedge.
 
-    `tangents` are unit directions (2,) of the lower and the upper surface at the base. Points of the wedge
-    are not cleaned, because they may be closer to each other than points of a file.
+    `tangents` are unit directions (2,) of the lower and the upper surface at the base.
     """
     points, (lower, upper) = section.points, tangents
     gap = float(np.hypot(*(points[0] - points[-1])))

@@ -107,9 +107,10 @@ def arcs_to_corners(body: Airfoil, cells: int, sampling: Sampling, first: float,
 
 
 def half_of_base(cells: int, nodes: int, sampling: Sampling) -> int:
-    """Return the number of cells on half of a base that has `nodes` nodes.
+    """Return the number of cells on half of a blunt base that has `nodes` nodes.
 
-    Raises InputError: no node in the middle of the base; too few cells are left for the sides.
+    `cells` is the number around the airfoil. Raises InputError: no node in the middle of the base; too few
+    cells are left for the sides.
     """
     base = nodes - 1
     if base % (2 * sampling.refined):

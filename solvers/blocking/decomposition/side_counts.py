@@ -157,7 +157,7 @@ def _unmatched(sides: Periodic) -> str:
 
 
 def alike_along_sides(chords: Chords, counts: Indices) -> bool:
-    """Return whether the sides of each periodic pair have equally many cells; `counts` are cells by chord."""
+    """Return whether, with these cell `counts`, both sides of each periodic pair have equally many cells."""
     return all(
         sum(value * counts[chord] for chord, value in row.items()) == 0.0 for row, _, _ in _alike(chords)
     )

@@ -14,12 +14,12 @@ from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """Grid lines that start at the nodes of a boundary loop of a layout and lead out of the layout.
+    """Grid lines that lead from nodes on a boundary loop of a layout outwards, to a loop beyond it.
 
     Parameters
     ----------
-    loop : index of the loop, the same in the layout's domain and in the extended one.
-    nodes : (k, m, 2) lines, sorted by the arc length of their first nodes, which are nodes of the layout.
+    loop : index of both loops, in the layout's domain and in the extended domain.
+    nodes : (k, m, 2) nodes of k lines, in the order of their first nodes along the layout's loop.
     arcs : (k,) arc lengths on the loop of the extended domain at which the lines end.
     layers : whether the lines are layers that end at a wall; no optimisation moves layers.
     """

@@ -58,11 +58,11 @@ def fitted(
     start: Floats, arcs: Floats, length: float, room: Floats, thickness: float, first: float,
     attempts: Sequence[MarchSettings], *, place: Callable[[int], str],
 ) -> Floats:  # fmt: skip
-    """Return nodes (n, m, 2) of valid layers of total `thickness`, or less where `room` (n,) is small.
+    """Return layers (n, m, 2) at a closed wall that do not fold: m nodes on each of n lines from the wall.
 
-    `start` (n, 2) are the nodes of the closed wall, `arcs` (n,) their arc lengths, and `length` is the wall's
-    total length. `place` returns, for messages, the position of a column as text. Raises InputError if a gap
-    is too narrow for layers, or if every march folds at a wall.
+    They are `thickness` thick, or thinner where `room` (n,) is smaller. `start` (n, 2) are the nodes of the
+    wall, `arcs` (n,) their arc lengths, and `length` is the length of the wall. `place` returns the position
+    of a line as text for messages. Raises InputError if a gap is too narrow, or if all attempts fold.
     """
     check_room(room, first, place)
     least = FEWEST_CELLS * first

@@ -110,11 +110,11 @@ def march_ring(
     domain: Domain, number: int, first: float, thickness: float, largest: float,
     mirrors: Sequence[Mirror] = (), before: Ring | None = None, room: Floats | None = None,
 ) -> Ring:  # fmt: skip
-    """Return the ring of layers around loop `number`, as thick as `thickness` where there is room.
+    """Return the layers around the whole loop `number`, `thickness` thick where there is room.
 
     `first` is the height of first cells, `largest` the greatest length of cells along the wall, both in the
-    domain's unit. The ring is symmetric about `mirrors` of the loop. `room` (n,) is the largest
-    thickness at the n columns of an earlier ring, `before`. Raises InputError, with the position, if no layer
+    domain's unit. The layers are symmetric about `mirrors` of the loop. With `before`, an earlier result,
+    they are at most `room` (n,) thick at its n columns. Raises InputError, with the position, if no layer
     fits in a gap, or if every march folds at a wall.
     """
     loop = domain.loops[number]

@@ -163,7 +163,7 @@ class WallLayers:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """By index of a loop around layers, functions whose steps limit the growth of cells (`Measures`)."""
+        """Limits (`Measures`) on cell growth along the outer edge of the layers around a loop, by loop."""
         measures = {k: ring.along for k, ring in self.rings.items()}
         if self.near is not None:
             ends = np.array([0.0, self.near.circle.length])

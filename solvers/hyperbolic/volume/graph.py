@@ -45,7 +45,7 @@ class Seen:
 
 @dataclass(frozen=True, eq=False)
 class MarchGraph:
-    """The arrays of ``kernels/surfaces/graph.h``; `order` (n,) lists the surface's nodes in their order."""
+    """The graph of a surface as arrays (``kernels/surfaces/graph.h``), for nodes in the `order` (n,)."""
 
     order: Indices
     red: int

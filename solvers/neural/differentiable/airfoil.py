@@ -102,7 +102,7 @@ def conformal(south: Tensor, north: Tensor, nj: int, *, failed: Failed = "raise"
     InputError
         Tensors of wrong shape, with unequal node counts or of different dtypes; `nj` below 2.
     SolverError
-        A body has no conformal map or a coordinate that is not finite, or its equations do not converge.
+        A body has no conformal map, its coordinates are not finite, or its equations do not converge.
         The message and the attribute ``members`` list the indices of such bodies in the batch.
     """
     return AirfoilGrids("base", "converged", str(south.device))(south, north, nj, failed=failed)

@@ -27,10 +27,10 @@ class Equations(Protocol):
         ...
 
     def adjoint(self, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
-        """Return the derivative (batch, 2, ni, nj) of a functional of the grid by boundary nodes.
+        """Return the derivatives (batch, 2, ni, nj) of functionals of grids with respect to boundary nodes.
 
-        `nodes` is the solution, `number` its smoothness weights from `solve`, and `gradient` the derivative
-        of the functional by all nodes as independent variables. Ignore the result at inner nodes.
+        `nodes` are the solutions, `number` their smoothness weights from `solve`. `gradient` has the
+        derivatives of the functionals with respect to all nodes. The result has no meaning at inner nodes.
         """
         ...
 

@@ -66,10 +66,10 @@ class ModelTask(Task):
 
 
 def judged(operator: PaperOperator, samples: Samples) -> dict[str, float]:
-    """Return the errors of the grids that a model predicts for `samples`; {} if there are none.
+    """Return the errors of the grids that a model predicts for `samples`; {} without samples.
 
-    ``median`` and ``worst`` are of the relative L2 error against the solved grids. ``boundary`` is the
-    greatest distance of a predicted boundary node from the given one. ``folded`` is the number of folded
+    ``median`` and ``worst`` are statistics of the relative L2 error against the solved grids. ``boundary`` is
+    the greatest distance of a predicted boundary node from the given one. ``folded`` is the number of folded
     cells in all grids, ``grids`` the number of grids.
     """
     boundary, errors, folded = 0.0, [], 0

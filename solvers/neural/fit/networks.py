@@ -77,9 +77,10 @@ class QuadUNet(NamedParameters, UNet[Tensor]):
             self.register_buffer(name, values, persistent=False)
 
     def forward(self, features: Tensor) -> Tensor:
-        """Return complex displacements (batch, heads, m, n) for `features` (batch, m, n, FEATURES).
+        """Return complex displacements (batch, heads, m, n) of nodes for `features` (batch, m, n, FEATURES).
 
-        They are 0 on the boundary. In four-sided domains m equals n; around bodies 2^(levels - 1) divides m.
+        There is one head (output) for each of `encoding.HEADS`. Displacements are 0 on the boundary. In
+        four-sided domains m must equal n. Around bodies m must be a multiple of 2^(levels - 1).
         """
         answer = self.through(features.movedim(-1, 1), self.counts)
         rim = torch.tensor(

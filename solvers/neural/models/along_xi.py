@@ -65,7 +65,7 @@ class AlongXi(Architecture):
 
 @dataclass(frozen=True)
 class WNO(AlongXi):
-    """Wavelet neural operator along xi: h <- gelu(K h + W h + b), where K acts on wavelet coefficients."""
+    """Wavelet neural operator along xi: its layers multiply wavelet coefficients by trained matrices."""
 
     levels: int = 3  # of the wavelet transform
     layers: int = 4  # wavelet layers

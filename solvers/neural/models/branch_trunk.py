@@ -110,9 +110,9 @@ class PODDeepONet(Architecture):
         return dense_shapes("branch", (2 * self.sensors, *self.hidden, self.features))
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
-        """Return the mean grid (nodes, 2) and the modes of the decomposition (nodes, features, 2), by name.
+        """Return the mean of `targets` (nodes, 2) and their POD modes (nodes, features, 2), by name.
 
-        If there are fewer than `features` modes, modes that are 0 are added.
+        If there are too few modes, modes that are 0 are added.
         """
         n = len(targets)
         rows = targets.reshape(n, -1)

@@ -50,10 +50,7 @@ class MeshONetHard(Architecture):
         return {**branch, **dense_shapes("trunk", (seen, *[self.width] * self.depth, self.features))}
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
-        """Return arrays by name that are computed from the training set: statistics of sensors and `targets`.
-
-        The modes of the targets have the shape (nodes, modes).
-        """
+        """Return statistics of sensors and `targets`, and modes (nodes, modes) of `targets`, by name."""
         seen = np.array([sensors(boundary, self.sensors) for boundary in samples.boundaries()])
         spread = seen.std(axis=0)
         size = np.sqrt((targets**2).mean())

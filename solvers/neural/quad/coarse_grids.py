@@ -56,9 +56,9 @@ def transfinite(sides: Sides) -> Floats:
 def coarse_grids(sides: Sides, network: Network, head: int) -> Floats:
     """Return the nodes (batch, 2, m, n) of the network's grids inside `sides`.
 
-    `head` is the index in `encoding.HEADS` of the method that the output of the network imitates. Grids for
-    the variational method have 33 x 33 nodes. Grids for Winslow's equations have as many nodes as the sides,
-    but at least 33 and at most 65 per direction.
+    `head` is the number, in `encoding.HEADS`, of the grid generator that the network imitates. Variational
+    grids have 33 x 33 nodes. Winslow grids have as many nodes as the sides, but at least 33 and at most 65
+    per direction.
     """
     base = transfinite(thinned(sides, LATENT, LATENT))
     shares = None if head == WINSLOW else _shares
@@ -76,12 +76,12 @@ def coarse_grids(sides: Sides, network: Network, head: int) -> Floats:
 
 
 def answered(z: Any, unit: Any, network: Moves, shares: Moves | None, xp: Any, around: bool = False) -> Any:
-    """Return complex grids `z` (batch, n, n), moved by Picard steps and then by a network.
+    """Return grids `z` (batch, n, n) of nodes x + i y, moved by Picard steps and then by a network.
 
-    With `around`, `z` are O grids unrolled to strips (batch, m + 1, n). `unit` are the same grids scaled to
-    unit size, and factors (batch, 1, 1) that undo the scaling. `network` computes displacements from grids
-    and Picard step. `shares` computes the fraction (batch, 1, 1) of the displacements to apply; None applies
-    all. `xp` is the module of the arrays, numpy or torch.
+    With `around`, `z` are O grids unrolled to strips (batch, m + 1, n). `unit` has the grids scaled to unit
+    size, and factors (batch, 1, 1) that scale them back. `network` returns displacements of nodes. `shares`
+    returns factors (batch, 1, 1) on these displacements; None means 1. `xp` is the module of the arrays,
+    numpy or torch.
     """
     sized, back = unit
     near, step = approach(sized, xp, around)

@@ -43,10 +43,10 @@ def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) ->
 
 
 def moved(base: Any, factor: Any, head: int, network: Moves, xp: Any) -> Any:
-    """Return O grids as strips, moved by the network; `base` (batch, m + 1, n) are the strips before.
+    """Return O grids, unrolled to strips, after the network has moved their nodes.
 
-    The last row of the result is equal to the first. `factor` (batch, 1, 1) scales the grids
-    to unit size. `head` is the index of the network's output. For `network` see `coarse_grids.answered`.
+    `base` (batch, m + 1, n) are the strips before. The last row of the result is equal to the first. `factor`
+    (batch, 1, 1) scales the grids to unit size. For `head` and `network` see `quad.coarse_grids`.
     """
     strip = answered(base, (base * factor, 1.0 / factor), network, None, xp, around=True)
     if head == WINSLOW:

@@ -26,18 +26,17 @@ THIRD, FOURTH = np.array([[-0.5, 1.0, 0.0, -1.0, 0.5], [1.0, -4.0, 6.0, -4.0, 1.
 def approach(
     z: Any, xp: Any, around: bool = False, steps: int = STEPS, *, harmonic: bool = True
 ) -> tuple[Any, Any]:
-    """Return grids nearer to Winslow's solution than `z`, with the same boundaries, and the last Picard step.
+    """Return grids nearer to Winslow's solution than `z`, and the last change; boundary nodes stay.
 
-    Each step inverts, by sine transforms, an operator with constant coefficients: the means over the domain
-    of alpha / (alpha + gamma) and gamma / (alpha + gamma). Three quarters of the leading truncation error of
-    differences are removed. ::
+    Each Picard step inverts, by sine transforms, an operator with constant coefficients. They are the means
+    over the domain of alpha / (alpha + gamma) and gamma / (alpha + gamma). Winslow's equations are::
 
         alpha z_xixi - 2 beta z_xieta + gamma z_etaeta = 0,
         alpha = |z_eta|^2, beta = z_xi . z_eta, gamma = |z_xi|^2        of the previous iterate
 
-    `z` (batch, n, n) are complex grids of unit size, arrays of `xp`, numpy or torch. With `around`, they are
-    strips (batch, m + 1, n), whose last column is the first plus one period. `steps` is the number of steps.
-    With `harmonic`, steps start from the harmonic grid. Otherwise they start from `z` and are accelerated by
+    `z` (batch, n, n) are nodes x + i y of grids of unit size, arrays of `xp`, numpy or torch. With `around`,
+    `z` are O grids unrolled to strips (batch, m + 1, n), whose last column is the first plus one period. With
+    `harmonic`, steps start from the harmonic grid. Otherwise they start from `z` and are accelerated by
     Anderson's method with one previous iterate, J. ACM 12 (1965) 547-560.
     """
     if xp is np:
@@ -80,7 +79,7 @@ def _extrapolated(correction: Any, step: Any, move: Any, xp: Any) -> Any:
 
 
 def nodes_after(n: int) -> int:
-    """Return how many nodes along a direction Picard steps use if the final grid has `n` nodes along it."""
+    """Return the number of nodes along a direction during Picard steps; the final grid has `n` nodes."""
     return min(max(n, LATENT), FINER)
 
 

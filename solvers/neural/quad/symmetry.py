@@ -78,9 +78,10 @@ def table(size: int) -> Integers:
 
 
 def convolution(weight: Any, places: Any, xp: Any) -> Any:
-    """Return the equivariant kernel (8 out, 8 in, size, size) that `weight` (out, in, 8, size, size) defines.
+    """Return the kernel (8 out, 8 in, size, size) of a convolution that commutes with turns and reflections.
 
-    `places` is the result of `table`; `xp` is the module of the arrays, numpy or torch.
+    `weight` (out, in, 8, size, size) are its parameters, `places` the result of `table`. `xp` is the module
+    of the arrays, numpy or torch.
     """
     out, into, _, size, _ = weight.shape
     spread = weight.reshape(out, into, -1)[:, :, places]
@@ -88,7 +89,7 @@ def convolution(weight: Any, places: Any, xp: Any) -> Any:
 
 
 def lift(weight: Any, seen: Any) -> Any:
-    """Return the matrix (8 out, FEATURES) of the equivariant first layer from its `weight` and `SEEN`."""
+    """Return the matrix (8 out, FEATURES) of a network's first layer; `weight` has its parameters."""
     return (weight[:, None, :, None] * seen).sum(2).reshape(ORDER * len(weight), -1)
 
 

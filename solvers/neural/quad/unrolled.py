@@ -67,5 +67,5 @@ def factors(strips: Any, xp: Any = np) -> Any:
 
 
 def rolled(strips: Any, centres: Any = 0.0, xp: Any = np) -> Any:
-    """Return the O grids (batch, m + 1, n) around `centres` (batch, 1, 1) that unroll to `strips`."""
+    """Return O grids z (batch, m + 1, n) from strips i log(z - centre); `centres` (batch, 1, 1)."""
     return functions_of(xp).exp(times(-1j, strips)) + centres

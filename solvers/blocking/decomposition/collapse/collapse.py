@@ -38,10 +38,10 @@ PER_TRIAL, PER_OPTIMUM = 3, 20
 
 
 def simplify(mesh: QuadMesh, *, price: float, sizes: SizeMetric | None) -> BaseComplex:
-    """Return the blocks of an optimised quad mesh after removing chords (rows of blocks), narrow ones first.
+    """Return the blocks of an optimised quad mesh from which needless rows of blocks are removed.
 
-    `price` is by how many degrees the mean deviation of angles from 90 degrees may grow for each block that
-    is removed. `sizes` are target edge lengths.
+    For each removed block, the mean deviation of angles from 90 degrees may grow by `price` degrees. `sizes`
+    are target edge lengths.
     """
 
     def wanted(mesh: QuadMesh) -> Floats | None:

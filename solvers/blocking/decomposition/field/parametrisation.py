@@ -29,7 +29,7 @@ class Parametrisation:
 
     Parameters
     ----------
-    frames : directions theta and the cut.
+    frames : directions theta in the triangles, and the cut.
     sizes : (t,) lengths s of the gradients.
     """
 

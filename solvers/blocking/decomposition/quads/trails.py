@@ -21,7 +21,7 @@ def map_tables(seamless: SeamlessMap) -> Tables:
 
 @dataclass(frozen=True, eq=False)
 class Trails:
-    """Lines of constant u or v in a seamless map, each a sequence of straight pieces, one per triangle."""
+    """Lines of constant u or v in a map of a triangulation; each line has a straight piece per triangle."""
 
     first: Indices  # (k + 1,) first piece of each trail
     face: Indices  # (p,) triangle of the piece

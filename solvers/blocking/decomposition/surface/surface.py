@@ -45,7 +45,7 @@ class Triangulation:
 
     @cached_property
     def fans(self) -> tuple[Indices, Indices]:
-        """Offsets (n + 1,) and corners (3 t,): corners[offsets[v] : offsets[v + 1]] meet at vertex v."""
+        """Triangle corners at vertices: where each vertex starts (n + 1,) in a list, and the list (3 t,)."""
         start, corners, reached = surface_fans(self.arrays, self.size)
         if reached != len(corners):
             raise SolverError("triangles that meet in a point only")

@@ -36,7 +36,7 @@ def node_images(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> list
 
 
 def agree(images: Images) -> bool:
-    """Return whether images are consistent: reflections in two mirrors must rotate the mesh onto itself."""
+    """Return whether mirrors are consistent: reflections in two of them must rotate the mesh onto itself."""
     if len(images) < 2:
         return True
     (_, one), (_, other) = images[:2]

@@ -134,8 +134,8 @@ def _symmetric(mesh: QuadMesh, mirrors: Sequence[Mirror]) -> tuple[QuadMesh, Ima
 def cut_on_mirrors(mesh: QuadMesh, images: Images, more: Bools | None = None) -> BaseComplex:
     """Return the blocks of a mesh, cut so that the mirror image of a block side is again a block side.
 
-    Blocks end at mirrors through corners of the domain with two cells, and at edges in the mask `more` (e,).
-    A ring of quads is cut at a mirror too. Raises SolverError if no grid line of the ring is on a mirror.
+    `more` (e,) marks edges at which blocks end too. Raises SolverError if blocks form a closed ring that has
+    no grid line on a mirror.
     """
     blocks = base_complex(mesh, more)
     ring = bool(images) and any(len(distinct(block[[0, 0, -1], [0, -1, 0]])) < 3 for block in blocks.blocks)
