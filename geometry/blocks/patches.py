@@ -71,7 +71,7 @@ class Patch:
 
     @property
     def place(self) -> tuple[int, int]:
-        """Index direction (0 to 2) normal to the side; and 0 for its first side, -1 for its last."""
+        """Number of the index normal to the side, and its value on the side: 0, or -1 for the last."""
         return PLACES[self.side]
 
     @property

@@ -50,7 +50,7 @@ class CheckResult:
 
     @property
     def value(self) -> float | None:
-        """The value of the figure."""
+        """The checked value, None if there is none."""
         return self.figure.value if self.figure else None
 
     @property
@@ -67,7 +67,7 @@ class CheckResult:
 
     @property
     def worst(self) -> Limit | None:
-        """The limit that the figure exceeds; if there are several, a failure comes before a warning."""
+        """The limit that the value exceeds; if there are several, a failure comes before a warning."""
         limits = self.check.limits if self.figure else ()
         broken = [x for x in limits if self.figure and beyond(self.figure.value, x.compare, x.value)]
         return max(broken, key=lambda limit: limit.level == "fail", default=None)

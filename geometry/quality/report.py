@@ -96,7 +96,7 @@ class QualityReport:
 
     @cached_property
     def periods(self) -> tuple[Period, ...]:
-        """The different translations or rotations between periodic sides of the grid."""
+        """The distinct translations or rotations between periodic sides of the grid."""
         if all(connection.transform is None for connection in self.grid.connections):
             return ()
         from meshonet.geometry.quality.periodic import periods
@@ -141,7 +141,7 @@ class QualityReport:
         return Judgement(tuple(self._broken(gates)), tuple(dict.fromkeys(beyond)), tuple(replaced), profile)
 
     def judged(self, gates: Gates) -> list[tuple[Gate, Figure, bool]]:
-        """Return each limit of the user, the figure that it limits, and whether the figure is beyond it."""
+        """Return each limit of the user, the value that it limits, and whether the value is beyond it."""
         more, gates = self._compared(), _parsed(gates)
         figures = [gate.figure(self.figures, more) for gate in gates]
         pairs = zip(gates, figures, strict=True)

@@ -106,7 +106,7 @@ class Channel:
         return self._parts[k](s)
 
     def at(self, s: Floats, h: Floats) -> Floats:
-        """Return x and radius (..., 2) of points with coordinates `s` and `h` (...)."""
+        """Return x and radius (..., 2) for coordinates `s` along and `h` across the channel (...)."""
         out = np.empty((s.size, 2))
         channel_points(
             self._tables, np.ascontiguousarray(s).reshape(-1), np.ascontiguousarray(h).reshape(-1), out
@@ -114,7 +114,7 @@ class Channel:
         return out.reshape(*s.shape, 2)
 
     def in_space(self, values: Floats) -> Floats:
-        """Return x, y, z (..., 3) of points with coordinates s, theta, h (..., 3); theta is atan2(y, z)."""
+        """Return x, y, z (..., 3) of points s, theta, h (..., 3): along, around and across the channel."""
         out = np.empty(values.shape)
         channel_space(self._tables, np.ascontiguousarray(values).reshape(-1, 3), out.reshape(-1, 3))
         return out
@@ -122,22 +122,22 @@ class Channel:
     def store(self, values: Floats, ids: Indices, space: Floats) -> None:
         """Write x, y, z of points into `space` (levels, n, 3), at the indices `ids` (m,) of its second axis.
 
-        `values` (levels, m, 3) are s, theta, h of these points on each level along the span.
+        `values` (levels, m, 3) are s, theta, h of these points: along, around and across the channel.
         """
         channel_nodes(self._tables, values, ids, space)
 
     def lengthen(self, begin: Floats, end: Floats, sizes: Floats) -> None:
         """Move the points `end` (..., 3), in place, to the distances `sizes` (...) from `begin` (..., 3).
 
-        Points are s, theta, h. Distances are measured in x, y, z.
+        Points are s, theta, h: along, around and across the channel. Distances are measured in x, y, z.
         """
         lengthen_cells(self._tables, begin.reshape(-1, 3), sizes.reshape(-1), end.reshape(-1, 3))
 
     def put_on_blade(self, columns: Floats, wall: Floats, first: float) -> None:
         """Move columns of nodes, in place, to begin on the blade with first cells of height `first`.
 
-        `columns` (..., rows, 3) are s, theta, h of nodes. `wall` (..., 2) are s, theta of their new first
-        nodes. Displacements fade to 0 at the last node of a column.
+        `columns` (..., rows, 3) are s, theta, h of nodes: along, around and across the channel. `wall` (...,
+        2) are s, theta of their new first nodes. Displacements fade to 0 at the last node of a column.
         """
         flat = columns.reshape(-1, *columns.shape[-2:])
         columns_on_blade(self._tables, wall.reshape(-1, 2), first, flat)

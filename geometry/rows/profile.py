@@ -203,7 +203,7 @@ class BladeProfile:
         return np.sort(wrapped(at, -0.25))
 
     def at(self, u: Floats) -> Floats:
-        """Return s, theta and h (n, 3), the coordinates of `Channel`, at places `u` (n,)."""
+        """Return s, theta, h (n, 3), along, around and across the channel, at positions `u` (n,)."""
         arcs = self.arcs(u)
         m, theta = self.curve.at(arcs).T
         return np.stack([self._map.back(m), theta, self._heights(arcs)], axis=1)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def digests_of(entry: str | InputError | Draw) -> list[Input]:
-    """Return an input and a digest of its name and content; for a dataset, an entry for each sample.
+    """Return an input and a digest of its name and content; for a dataset, one such pair per sample.
 
     The digest of an unreadable input is computed from its name and the error.
     """

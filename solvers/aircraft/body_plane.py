@@ -207,8 +207,8 @@ class BodyEnd:
     def patches(self, points: Points, side: Floats, last: Floats) -> tuple[Floats, Floats]:
         """Return two patches (ni, nj, 3): rows that end at `side` (n, 3), and the core around the tip.
 
-        `last` (n,) are the lengths of the cells at the side. Nodes are s, theta, zeta (see `BodyMap`), where
-        s is measured from the tip of nose or tail. `points` maps nodes to x, y, z.
+        `last` (n,) are the lengths of the cells at the side. Nodes are s, theta, zeta: along, around and away
+        from the body, with s = 0 at the tip of nose or tail. `points` maps nodes to x, y, z.
         """
         begin, first = self._begin(side)
         lines = lines_between(points, begin, side, (first, last), self.cells)

@@ -189,7 +189,7 @@ class CollarLevel:
 
     @cached_property
     def low_and_top(self) -> tuple[Floats, Floats]:
-        """Theta of the nodes below the rectangle around the wing, and of the nodes above it."""
+        """Angles around the body of nodes below the rectangle around the wing, and of nodes above it."""
         out = []
         for cells, way, step in zip(
             (self.plan.low, self.plan.top), self.hole.bands, self.beside, strict=True
@@ -203,7 +203,7 @@ class CollarLevel:
 
     @property
     def across(self) -> tuple[Floats, Floats]:
-        """Ascending theta of the nodes on the front and on the back of the rectangle around the wing."""
+        """Ascending angles around the body, of nodes on the front and on the back of the rectangle."""
         outer, half, rho = self.ring[:, -1, 1], (len(self.ring) - 1) // 2, float(self.hole.scale[1])
         edge, nose = self.plan.edge, self.plan.nose
         front = outer[half + nose : half - nose - 1 : -1] / rho
@@ -216,7 +216,7 @@ class CollarLevel:
 
     @property
     def long_sides(self) -> tuple[Floats, Floats]:
-        """Coordinate s of nodes on the lower, then the upper side of the rectangle, from back to front."""
+        """Positions along the body of nodes below, then above the wing, from back to front."""
         s, half = self.ring[:, -1, 0] / self.hole.scale[0], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
         return s[half + nose : 2 * half - edge + 1][::-1], s[edge : half - nose + 1]

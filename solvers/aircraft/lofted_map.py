@@ -21,7 +21,7 @@ _POLE = 1e-4  # distance from nose or tail, in body lengths, within which normal
 
 
 class LoftedMap(BodyMap):
-    """The map from coordinates (s, theta, zeta), defined in `BodyMap`, to the space around a lofted body."""
+    """The map from coordinates along, around and away from a lofted body to the space; see `BodyMap`."""
 
     body: LoftedBody
 
@@ -55,7 +55,7 @@ class LoftedMap(BodyMap):
         return np.stack([x, y, z], axis=-1).reshape(places.shape)
 
     def places(self, points: Floats, near: Floats | None = None) -> Floats:
-        """Return s, theta, zeta (..., 3), see `BodyMap`, of `points` (..., 3); `near` is a first guess."""
+        """Return s, theta, zeta (..., 3), as in `BodyMap`, of `points` (..., 3); `near` is a guess."""
         wanted = points.reshape(-1, 3)
         at = (self._first_places(wanted) if near is None else near.reshape(-1, 3)).copy()
         steps = np.diag([_STEP * self.body.length, _STEP, _STEP])

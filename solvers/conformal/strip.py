@@ -98,8 +98,8 @@ def wavenumbers(like: Any = None, xp: Any = np) -> Any:
 def decay(k: Any, T: Any, eta: Any, xp: Any = np) -> tuple[Any, Any]:
     """Return how much Fourier modes k of wall and far field decay up to eta, each (..., len(k), len(eta)).
 
-    The factors are sinh(kT(1-eta))/sinh(kT) and sinh(kT eta)/sinh(kT). T, the height of the strip, is a
-    number or has the shape (..., 1, 1).
+    The factors are sinh(kT(1-eta))/sinh(kT) and sinh(kT eta)/sinh(kT). T, the height of the periodic strip
+    between wall and far field, is a number or has the shape (..., 1, 1).
     """
     k, exp = abs(k)[:, None], functions_of(xp).exp
     flat = k == 0

@@ -34,7 +34,7 @@ class StripWalls(NamedTuple):
 
 
 def walls(boundary: Boundary) -> StripWalls:
-    """Map wall and far field of an O boundary to a strip. Raises InputError if no conformal map exists."""
+    """Map wall and far field of an O boundary to a periodic strip. Raises InputError: no conformal map."""
     z, far = mirrored(boundary.south[:-1]), mirrored(boundary.north[:-1])
     hand, (point, direction) = handedness(z, far)
     # near the origin: far from it the map's branch points are subject to cancellation

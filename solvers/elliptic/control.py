@@ -44,11 +44,10 @@ class Factors:
 
 @dataclass(frozen=True, eq=False)
 class Controls:
-    """Control functions φ (along ξ) and ψ (along η) of Winslow's equations, stored as logarithms.
+    """Control functions φ and ψ of Winslow's equations, as logarithms of ratios of neighbouring edge lengths.
 
     The equations are α (x_ξξ + φ x_ξ) - 2β x_ξη + γ (x_ηη + ψ x_η) = 0, with the metric coefficients α, β, γ.
-    The logarithm l of the ratio of neighbouring edges along ξ gives φ = -(2/h) tanh(h l/2) on a multigrid
-    level with step h in ξ.
+    A logarithm l along ξ gives φ = -(2/h) tanh(h l/2) on a multigrid level with step h in ξ.
     """
 
     phi: Factors  # logarithm of the ratio of neighbouring edge lengths along ξ and along η

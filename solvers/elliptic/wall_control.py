@@ -54,7 +54,7 @@ class ControlledEdge:
         return self._weight * lean, self._weight * high
 
     def correct(self, nodes: Floats, relaxation: float) -> None:
-        """Correct the sources by the errors of angles and heights of `nodes`, multiplied by `relaxation`."""
+        """Correct the sources by the errors in angle and height at `nodes`, times `relaxation`."""
         lean, high = self.errors(nodes)
         up = first_heights(lines_from_side(nodes, self.side))
         steps = self._steps

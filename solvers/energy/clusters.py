@@ -28,7 +28,7 @@ class Window:
         return int(np.prod(np.subtract(self.last, self.first)))
 
     def rows(self, ni: int, periodic: bool) -> NDArray[np.intp]:
-        """Return the indices i (m,) of the window's nodes; a `periodic` block has ni - 1 different ones."""
+        """Return the indices i (m,) of the window's nodes; in a `periodic` block, ni - 1 becomes 0."""
         rows = np.arange(self.first[0], self.last[0] + 1)
         return rows % (ni - 1) if periodic else rows
 

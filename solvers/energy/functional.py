@@ -50,7 +50,7 @@ def value(nodes: Floats, weights: Weights) -> float:
 
 
 def relief_of(wall: Floats) -> Floats:
-    """Return factors (ni,) for the angle terms of the functional at the nodes of a closed `wall` (ni, 2).
+    """Return factors (ni,) for the angle terms of the functional E at the nodes of a closed `wall` (ni, 2).
 
     The factor is 1. Where the angle of the domain exceeds 320 degrees, as at a sharp trailing edge, it is
     sin⁴ of half this angle. The least possible value of the term is then the same as for right angles.

@@ -39,7 +39,7 @@ def optimise(
     targets: Floats | None = None, tolerance: float = 1e-4, turning: float = ALLOWED,
     weights: tuple[float, float] = SIZED, growth: tuple[float, float] = (0.0, 0.0),
 ) -> QuadOptimum:  # fmt: skip
-    """Return the mesh with its nodes at the minimum of the functional; wall nodes slide along their walls.
+    """Return the mesh with its nodes at the variational optimum; wall nodes slide along their walls.
 
     Periodic partners move together. Cells without free nodes are ignored, but must not be folded. The
     smoothness term compares the lengths of neighbouring edges, along and across grid lines, also across block
@@ -53,7 +53,7 @@ def optimise(
     targets : (e,) target lengths of `mesh.edges` in any unit, because only ratios of neighbours matter.
     tolerance : the iteration ends after three consecutive relative gains below a hundredth of this.
     turning : angle in radians by which a wall may turn along one edge without penalty.
-    weights : w (angles) and β (smoothness) of the functional if there are `targets` or a penalty for growth.
+    weights : of angles and of smoothness, if there are `targets` or a penalty for growth.
     growth : weight of a penalty for growth ratios, and the logarithm of the largest ratio without penalty.
     """
     problem = problem_of(mesh, held, aspects, targets, turning)

@@ -70,7 +70,7 @@ class Operator(ABC):
 
 
 def in_batches(boundaries: Sequence[Boundary], threads: int = 1) -> Iterator[list[int]]:
-    """Yield lists of indices of at most `BATCH` boundaries with equal node counts; each index occurs once.
+    """Yield lists of at most `BATCH` indices of boundaries with equal node counts; each index occurs once.
 
     Lists for the same node counts have about equal lengths, and are enough to occupy all `threads`.
     """

@@ -77,7 +77,7 @@ def gap_blocks(
     """Return the blocks in the gap between the blade and hub or casing, given their nodes at both ends.
 
     `around` (k,) are the indices of the blade's nodes in a section, clockwise. `outline` (levels, k, 3) has
-    s, theta, h (see `Channel`) of these nodes on each level along the span.
+    s, theta, h of these nodes (along, around and across the channel) on each level along the span.
     """
     fill = ends.fill
     blade = row.channel.in_space(outline[:, fill.outline])

@@ -45,7 +45,7 @@ def middle_section(
 
     Parameters
     ----------
-    longest : by loop index, length of the straight rows at inlet and outlet, the greatest of all sections.
+    longest : by loop index, greatest length of the straight rows at inlet and outlet in all sections.
     coarse : result of `coarse_section`; None: it is computed.
 
     Raises NoValidGridError if cells are folded.

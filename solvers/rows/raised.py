@@ -42,7 +42,7 @@ class Rise:
         ----------
         row, zone, blade : the row, and the height ranges (zones) of the gap and of the blade.
         around : positions u around the blade of the k columns, as functions of the height.
-        lines : s and theta of all k * (rows + 1) nodes of the columns, as functions of the height.
+        lines : s (along the channel) and theta of all k * (rows + 1) nodes, as functions of the height.
         """
         end, up, width = (blade.high, 1.0, row.tip_gap)
         if zone.low == 0.0:

@@ -18,7 +18,7 @@ _FACING = 0.1  # largest net area that faces a plane of symmetry, as a fraction 
 
 
 class Symmetry(NamedTuple):
-    """The p planes of symmetry of a surface, masks (p, k) of its k open edges that are in each, and notes."""
+    """The p planes of symmetry of a surface, masks (p, k) of the open edges in each plane, and notes."""
 
     planes: tuple[Plane, ...]
     inside: Indices

@@ -19,7 +19,7 @@ Grids = NDArray[np.complexfloating[Any, Any]]
 
 
 def held_out_figures(answers: Grids, base: Grids, winslow: Grids, variational: Grids) -> dict[str, Any]:
-    """Return error measures of a network's grids `answers` (m, heads, n, n) against target grids (m, n, n).
+    """Return error measures of a network's grids `answers` (m, outputs, n, n) against targets (m, n, n).
 
     ``max`` is the largest cell angle of a grid, ``mean`` the mean of each cell's largest angle. A gain is the
     network's reduction of such an angle relative to Winslow's grids, divided by the reduction by variational

@@ -25,7 +25,7 @@ class Frame:
 
 @dataclass(frozen=True)
 class Architecture:
-    """Base class of models from boundaries to grids; fields are settings, stored in the model file."""
+    """Base class of models that make grids from boundaries; the model file stores their fields."""
 
     base: ClassVar[Literal["none", "harmonic"]] = "none"  # grid to which the network's output is added
     physics: ClassVar[bool] = False  # whether it is trained on Winslow's equations, one network per geometry

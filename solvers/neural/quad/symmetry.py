@@ -71,7 +71,7 @@ SEEN: Floats = np.stack([_seen(element) for element in ELEMENTS])  # (8, FEATURE
 def table(size: int) -> Integers:
     """Return the indices (8, 8, size²) of the weights w that are entries of the convolution kernels.
 
-    There is a kernel K[h, g](p) = w[h⁻¹ g](h⁻¹ p) for each pair of symmetries h, g of the square.
+    A kernel has K[h, g](p) = w[h⁻¹ g](h⁻¹ p) at position p, with symmetries h and g of the square.
     """
     count = size * size
     return np.asarray(RELATIVE[:, :, None] * count + TAPS[size].reshape(ORDER, 1, count))
