@@ -47,7 +47,7 @@ class Conversion:
     scale: float = 1.0
 
     def turn(self) -> Revolution | None:
-        """Return the revolution about the axis; None if grids are not revolved."""
+        """Return the revolution of planar grids about the axis; None if grids are not revolved."""
         turn = revolution(self.revolve, self.planes, self.axis)
         if turn is not None and self.extrude is not None:
             raise InputError("{extrude} and {revolve} both make grids 3D", "give one of them")

@@ -85,7 +85,7 @@ class Candidate:
     Parameters
     ----------
     stream : content of the file.
-    real, integer : number types of coordinates, and of node counts and iblank.
+    real, integer : number types of coordinates, and of node counts or other integers.
     planes : whether the arrays of a block are stored plane by plane.
     numbers, kind : number type and byte order, for messages and as options of the format.
     """

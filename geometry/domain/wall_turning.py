@@ -22,7 +22,7 @@ def _table(loop: Loop) -> tuple[Floats, Floats]:
 
 
 def turning_between(loop: Loop, first: Floats, last: Floats) -> Floats:
-    """Return the angles (k,) in degrees by which a loop turns between arc lengths, without its corners.
+    """Return the angles (k,) in degrees by which a loop turns between arc lengths, corners left out.
 
     They are integrals of |curvature| from arc length `first` (k,) to `last` (k,).
     """

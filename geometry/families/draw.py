@@ -57,7 +57,7 @@ class Draw:
 
 @dataclass(frozen=True)
 class Draws(Sequence[Draw]):
-    """A sequence of `length` members of a family, each with its split; members are made when used."""
+    """A sequence of `length` members of a family, for training or test; members are made when used."""
 
     first: Draw
     length: int

@@ -84,7 +84,7 @@ class LayerOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class SideOptions:
-    """Options for the height of first cells at single sides of four-sided domains."""
+    """Options for the height of first cells at individual sides of four-sided domains."""
 
     spacing_south: float | None = _option(
         metavar="H", help="Height of the first cell at the south side of a four-sided domain, in the unit of "

@@ -119,7 +119,7 @@ class Session:
         self._write(f"warning: {text}")
 
     def written(self, report: Timed, path: str) -> None:
-        """Report a member that was written to `path`: in full if it is the only one, else in one line."""
+        """Report what was written to `path`: in full if it is the only output, else in one line."""
         report.output = None if report.left_out else path
         if report.warning:
             self.warn(report.warning)

@@ -13,7 +13,7 @@ from meshonet.geometry.arrays import Floats
 class Direction:
     """One index direction of a multigrid level: node positions (n,), in steps of the finest level.
 
-    The next coarser level keeps every second node and the last node; its last step may be shorter. If
+    The next coarser level keeps every second node and the last node, so that its last step may be shorter. If
     `periodic`, the last node is the first.
 
     >>> Direction(np.arange(8.0), periodic=False).coarse.positions

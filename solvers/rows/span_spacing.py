@@ -140,7 +140,7 @@ class Spacing:
 
 @dataclass(frozen=True, eq=False)
 class LineArcs:
-    """Relation of arc length and parameter, 0 to 1, on each of n lines."""
+    """Relation between the arc length and a parameter from 0 to 1, on each of n lines."""
 
     lengths: Floats  # (n,) lengths of the lines
     ahead: SpanLines  # parameter minus relative arc length, by relative arc length

@@ -30,7 +30,7 @@ CLOSE = "use a larger {growth}, a first cell half or twice as high, or open the 
 
 
 def feature_sizes(domain: Domain) -> SizeMetric:
-    """Return isotropic cell sizes that resolve the curvature, corners and gaps of the walls of a domain."""
+    """Return isotropic cell sizes that resolve curvature, corners and gaps of a domain's walls."""
     points, normals, sizes = [], [], []
     for loop in domain.loops:
         arcs, size = sizes_by_bend(loop, loop.length / CELLS_AROUND, TURN)

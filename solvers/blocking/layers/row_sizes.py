@@ -107,7 +107,7 @@ class RowSizes:
         return SizeMetric(points[on], normals[on], across[on], along[on], np.inf)
 
     def wake_metric(self, wake: Floats, scale: float, settings: LayerSettings) -> SizeMetric:
-        """Return the target sizes of cells next to a `wake` (k, 2), a line that begins at the sharp edge."""
+        """Return the target sizes of cells next to a `wake` (k, 2), the line behind a sharp trailing edge."""
         tangent = np.gradient(wake, axis=0)
         normals = turned_left(tangent) / np.hypot(*tangent.T)[:, None]
         away = np.hypot(*(wake - wake[0]).T)

@@ -71,7 +71,7 @@ class StripTask(Task):
         return {"loss": median, "p90": p90, "worst": worst}
 
     def answers(self) -> list[Complexes]:
-        """Return the network's predictions of `Strips.residual` for the held-out strips."""
+        """Return the network's predictions for the held-out bodies, each like `Strips.residual`."""
         channels, scalars, size = encode(self.held_out.wall, self.held_out.far)
         with torch.no_grad():
             out = self.net(tensor(channels).to(self.device), tensor(scalars).to(self.device)).cpu()
