@@ -188,8 +188,8 @@ HEAD = """# The neural operator for bodies: accuracy and time
 
 Read this page to decide whether the neural network `hole-o` is accurate enough for your O grids around
 bodies. `hole-o` predicts the grid of the variational solver. A second output of the same
-[network](../theory/operators.md), `hole-winslow`, predicts the grid of Winslow's solver. The page compares
-both with the solvers. CPU times are medians, for one thread.
+[network](../theory/operators.md), `hole-winslow`, predicts the grid of Winslow's solver. CPU times
+are medians, for one thread.
 
 - *TFI*: transfinite interpolation.
 - *Winslow*, *variational*: the solvers `solve-pde --method winslow` and `solve-pde --method variational`.

@@ -222,8 +222,8 @@ HEAD = """# The neural operator for four-sided domains: accuracy and time
 
 Use this page to decide whether the grids of the neural network `quad-general` are good enough for your
 batches of four-sided domains. `quad-general` predicts the grid of the variational solver. A second output of
-the same [network](../theory/operators.md), `quad-winslow`, predicts the grid of Winslow's solver. The page
-compares both with the solvers. CPU times are medians, for one thread.
+the same [network](../theory/operators.md), `quad-winslow`, predicts the grid of Winslow's solver. CPU times
+are medians, for one thread.
 
 - *TFI*: transfinite interpolation.
 - *Winslow*, *variational*: the solvers `solve-pde --method winslow` and `solve-pde --method variational`.

@@ -63,10 +63,10 @@ NETWORKS = """## A network: 3DMeshNet
 Use `variational`, not 3DMeshNet: the network takes far more CPU time and makes fewer valid grids.
 
 A 3DMeshNet (`train --model meshnet`) is trained anew for each domain, here for the first {count} domains of
-the section *Quality*, with {epochs} steps (default 15,000). The training is part of the CPU time.
+*Quality*, with {epochs} steps (default 15,000). The training is part of the CPU time.
 
 - *3DMeshNet*: the given boundary nodes replace the predicted ones (`infer --answer pasted`). The largest
-  error of a predicted boundary node is {off} % of the domain size (median over the domains).
+  error of a predicted boundary node is {off} % of the domain size (median).
 - *3DMeshNet, repaired*: folded cells are repaired too, as by `infer` without options.
 """
 

@@ -256,9 +256,9 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "Variational grids have smaller means and maxima of the cells' largest angles than Winslow's grids.\n"
-        f"The network reaches {100 * gain['mean_gain']:.0f} % of this reduction of the mean, and "
-        f"{100 * gain['max_gain']:.0f} % of that of the maximum.",
+        "The means and maxima of the cells' largest angles are smaller in variational grids than in Winslow's.\n"
+        f"The network reaches {100 * gain['mean_gain']:.0f} % of this reduction for the mean, "
+        f"{100 * gain['max_gain']:.0f} % for the maximum.",
     ]
     return lines
 
