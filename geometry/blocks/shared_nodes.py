@@ -55,7 +55,7 @@ def numbered(
 def node_table(
     blocks: Sequence[Block], connections: Sequence[Connection]
 ) -> tuple[Floats, tuple[Indices, ...]]:
-    """Return the nodes (n, d) of all blocks, joined nodes once; also, per block, the indices of its nodes."""
+    """Return the nodes (n, d) of all blocks, shared ones once, and per block the indices of its nodes."""
     numbers = shared_nodes([block.counts for block in blocks], connections)
     if len(blocks) == 1 and not connections:
         return np.ascontiguousarray(blocks[0].nodes.reshape(-1, blocks[0].nodes.shape[-1])), numbers

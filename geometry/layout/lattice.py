@@ -26,7 +26,7 @@ def smallest_jacobians(nodes: Floats, quads: Indices) -> Floats:
 
 
 def lattice_quads(blocks: Sequence[Indices]) -> Indices:
-    """Return the quads (m, 4), counter-clockwise, of `blocks` (ni, nj) of node indices; j varies fastest."""
+    """Return the quads (m, 4), counter-clockwise and with j fastest, of `blocks` (ni, nj) of node indices."""
     return np.concatenate([ring_of(block).reshape(4, -1).T for block in blocks])
 
 

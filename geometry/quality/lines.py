@@ -142,7 +142,7 @@ def _across(
 
 
 def bends(nodes: Floats) -> Floats:
-    """Return by how many degrees (m-2, ...) lines turn along the first axis of `nodes` (m, ..., d)."""
+    """Return the angles (m-2, ...), in degrees, by which lines along axis 0 of `nodes` (m, ..., d) turn."""
     step = np.diff(nodes, axis=0)
     return np.degrees(np.abs(angle_between(step[:-1], step[1:])))
 

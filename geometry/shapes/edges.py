@@ -44,7 +44,7 @@ class DrawnEdge(NamedTuple):
 
 
 def channel(walls: Sequence[DrawnEdge], name: str, notes: tuple[str, ...] = ()) -> DomainShape | Outline:
-    """Return the domain between two walls, closed by straight lines between their ends; the first is south.
+    """Return the domain between two walls, whose ends are joined by straight lines; the first wall is south.
 
     Walls are called ``wall`` by default and have the kind ``wall`` unless their name implies another. The
     line between the first points is ``inlet``, the line between the last points ``outlet``. Raises

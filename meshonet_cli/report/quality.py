@@ -120,7 +120,7 @@ def blocks_line(blocks: BlockFigures) -> str:
 
 
 def lines_table(grid: Grid, blocks: BlockFigures) -> str:
-    """Return angles, growth and bends along grid lines of a multi-block grid as a table."""
+    """Return a table of angles, growth and bends along the grid lines of a multi-block grid."""
     angles = blocks.deviation
     rows = [["angles and lines", "mean", "p99", "max", f"at {_PLACES[len(angles.at)]}", _axes(grid)]]
     values = (angles.mean, angles.p99, angles.max)

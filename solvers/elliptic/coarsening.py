@@ -55,11 +55,11 @@ class Direction:
 
     @cached_property
     def transfer(self) -> tuple[Floats, Floats, Floats, Floats]:
-        """Weights of linear interpolation (one array) and of its transpose, the restriction (three arrays).
+        """Weights of linear interpolation (one array), and of restriction, its transpose (three arrays).
 
-        The interpolation has for each fine node (n,) the weight of the next coarse node, 0 at coarse nodes.
-        The restriction has for each coarse node the weights of the fine nodes before, at and after it. These
-        weights are scaled by the lengths of the dual cells, so that a constant residual is preserved.
+        The first array has for each fine node (n,) the weight of the coarse node after it, 0 at coarse nodes.
+        The other arrays have for each coarse node the weights of the fine nodes before, at and after it,
+        scaled by the lengths of the dual cells, so that a constant residual is preserved.
         """
         before, after = self._steps
         length = (before + after) / 2

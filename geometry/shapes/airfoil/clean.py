@@ -40,7 +40,7 @@ class CleanSection:
     swapped: tuple[int, ...] = ()  # indices of given points that were in the wrong order
 
     def moved_apart(self) -> Self:
-        """Return the section with surfaces that nearly touch moved apart (see `separate_surfaces`)."""
+        """Return the section; surfaces that nearly touch are moved apart (see `separate_surfaces`)."""
         from meshonet.geometry.shapes.airfoil.separate_surfaces import moved_apart
 
         edge = 0.5 * (self.points[0] + self.points[-1]) if self.blunt else self.points[0]

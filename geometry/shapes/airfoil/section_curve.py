@@ -217,7 +217,7 @@ def _crossed(section: CleanSection, crossing: Crossing, places: Sequence[str]) -
 def farthest_arc(curve: Curve, point: Floats) -> float:
     """Return the arc length of the point of the curve that is farthest from `point`.
 
-    If several points are equally far (a flat nose), it is the middle one, so that symmetry is kept.
+    If several points are equally far (a flat nose), the middle one counts, so that symmetry is kept.
     """
     s = np.concatenate([curve.knots, 0.5 * (curve.knots + np.append(curve.knots[1:], curve.length))])
     s = np.sort(s)
