@@ -248,7 +248,7 @@ grids](../theory/variational.md).
 CONCLUSIONS = """
 ## Conclusions
 
-The first three conclusions are for 52 random domains of 129 x 129 nodes.
+The first three are for 52 random domains of 129 x 129 nodes.
 
 - **Angles**: the mean of the largest angles of the cells is 96.0 degrees in variational grids, 106.4 in
   Winslow's grids and 111.6 in TFI grids.

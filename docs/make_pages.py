@@ -55,8 +55,7 @@ between grids of a model and grids of a solver, on *held-out* shapes, which were
 `meshonet models NAME` prints the same errors. The training parameters are in [shipped
 models](../reference/models.md).
 
-In the tables, the *initial grid* or *base* is the grid that a network corrects, and *valid* grids have no
-folded cells.
+In the tables, the *initial grid* or *base* is the grid that a network corrects. *Valid*: no folded cells.
 """
 C_GRIDS = """## C grids: no model
 
@@ -256,7 +255,7 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "The means and maxima of the cells' largest angles are smaller in variational grids than in Winslow's.\n"
+        "Means and maxima of the cells' largest angles are smaller in variational grids than in Winslow's.\n"
         f"The network reaches {100 * gain['mean_gain']:.0f} % of this reduction for the mean, "
         f"{100 * gain['max_gain']:.0f} % for the maximum.",
     ]
