@@ -79,7 +79,7 @@ class Format:
         return str(place / f"{place.resolve().name}{self.suffixes[0]}")
 
     def with_options(self, text: str) -> Format:
-        """Return the format with comma-separated options; options after a colon override earlier options.
+        """Return the format with comma-separated options; a group after a colon overrides the group before.
 
         Raises InputError if an option is unknown, or if two exclude each other.
         """

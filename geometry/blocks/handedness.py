@@ -27,7 +27,7 @@ def signed_volume(coordinates: Sequence[Floats]) -> float:
 
 
 def flux_through(face: Floats) -> float:
-    """Return the integral ∮ r·n dA over a face with nodes (3, n, m)."""
+    """Return the integral of the position times the normal over a face with nodes (3, n, m)."""
     a, b, c, d = face[:, :-1, :-1], face[:, 1:, :-1], face[:, 1:, 1:], face[:, :-1, 1:]
     (x, y, z), (u, v, w) = c - a, d - b
     area = 0.5 * np.stack([y * w - z * v, z * u - x * w, x * v - y * u])

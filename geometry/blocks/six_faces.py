@@ -135,7 +135,7 @@ class SixFaces:
     def at(self, knots: list[Floats], places: list[Floats]) -> "SixFaces":
         """Return the faces with new nodes, interpolated by cubic splines.
 
-        `knots` are the parameters of present nodes, `places` of new nodes: for each direction, from 0 to 1.
+        `knots` and `places` are parameters, 0 to 1, of present and of new nodes along each direction.
         """
         made: dict[Side, Floats] = {}
         for side in FACES:

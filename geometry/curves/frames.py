@@ -20,9 +20,9 @@ def frames_along(
 ) -> tuple[Floats, Floats]:
     """Return x and y axes (n, 3) of cross-sections of a path at arc lengths `s` (n,), which increase from 0.
 
-    x, y and the tangent are right-handed. At the start, y is as close as possible to `up`, by default to
-    z, or to y if the path starts along z. On a closed path, frames are turned about the tangent at a constant
-    rate, so that the last equals the first. Raises InputError: `up` is parallel to the path's start.
+    x, y and the tangent are right-handed. At the start, y is as close as possible to `up`, by default to z,
+    or to y if the path starts along z. On a closed path, frames are turned about the tangent at a constant
+    rate, so that the last frame equals the first. Raises InputError: `up` is parallel to the path's start.
     """
     fine = (s[:-1, None] + (np.arange(steps) / steps) * np.diff(s)[:, None]).ravel()
     fine = np.append(fine, s[-1])

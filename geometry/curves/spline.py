@@ -107,8 +107,8 @@ def open_slopes(
 
     A spline joins each of the `stops` (indices of points, with the first and the last) to the next. `chord`
     (intervals, d) are the vectors between points, `h` (intervals,) their lengths. `held` (2, intervals, d)
-    has slopes at starts and ends of intervals, of which those at ends of splines are kept if finite. Without
-    such a slope, the outer interval is a parabola.
+    has slopes at the start and the end of each interval. Where a spline starts or ends, this slope is kept if
+    it is finite; otherwise the outer interval is a parabola.
     """
     delta = chord / h[:, None]
     doubled = np.zeros(len(h) + 1, dtype=np.intp)

@@ -74,7 +74,7 @@ class Tally:
         along: str | None,
         values: Sequence[Floats | Singles],
     ) -> None:
-        """Add `values`; their `count`, sum `total`, maximum `high` and its node or cell `at` are given."""
+        """Add `values` whose `count`, sum `total` and maximum `high` (at node or cell `at`) are known."""
         if high > self._max:
             self._max, self._at, self._along = high, at, along
         self._total += total

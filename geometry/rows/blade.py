@@ -153,7 +153,7 @@ class BladeSurface:
         return CubicTable(values, self.knots)
 
     def at(self, u: Floats, h: Floats) -> Floats:
-        """Return s and theta (p, m, 2) at places `u`, (m,) or (p, m), and heights `h` (p, m) on the blade."""
+        """Return s and angle theta (p, m, 2) on the blade, at places `u`, (m,) or (p, m), and heights `h`."""
         return self.crossings(self.lines(u.ravel()), h, len(h) if u.ndim == 1 else 1)
 
     def crossings(self, lines: CubicTable, h: Floats, levels: int = 1) -> Floats:

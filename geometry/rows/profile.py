@@ -197,7 +197,7 @@ class BladeProfile:
         return np.asarray(np.mod(self.leading + np.interp(u, *self._stops), self.curve.length))
 
     def corner_places(self) -> Floats:
-        """Return ascending positions u (c,) of all corners, from -0.25 to 0.75; the leading edge has 0."""
+        """Return positions u (c,) of corners around the blade, -0.25 to 0.75; the leading edge is at 0."""
         u, way = self._stops
         at = np.interp(np.mod(self.curve.corners - self.leading, self.curve.length), way, u)
         return np.sort(wrapped(at, -0.25))

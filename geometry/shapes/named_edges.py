@@ -63,7 +63,7 @@ class Labelled:
 
 
 def runs(side: Side, names: Sequence[str], walls: Sequence[str] = ()) -> list[Patch]:
-    """Return the patches of a side whose cells have these `names`; cells named "" get the side's name.
+    """Return the patches of a side from the `names` of its cells; cells named "" get the side's name.
 
     Patches with names in `walls` are walls unless the name implies another kind.
 

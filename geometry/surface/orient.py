@@ -53,7 +53,7 @@ def closing_axes(nodes: Floats, sides: Indices, planes: Sequence[Plane]) -> list
     """Return the axes of the planes of symmetry that close a surface.
 
     `sides` is the result of `open_sides`. If one plane contains all open edges except the rim of a small
-    hole, such as the end of half a fuselage, only its axis is returned.
+    hole, such as the end of half a fuselage, only the axis of this plane is returned.
     """
     axes = sorted({plane.axis for plane in planes})
     slack = FLAT * extent_of(nodes)

@@ -14,7 +14,7 @@ class DrawnInputs:
     shard: tuple[int, int] = (1, 1)
 
     def own(self) -> Iterator[Draw]:
-        """Yield the members of the shard."""
+        """Yield the members of the shard, which is every n-th member for n shards."""
         k, n = self.shard
         return map(self.draws.__getitem__, range(k - 1, len(self.draws), n))
 
@@ -23,7 +23,7 @@ class DrawnInputs:
         return len(self.draws) // self.shard[1]
 
     def parts(self, size: int) -> Iterator[tuple[int, tuple[Draw, ...]]]:
-        """Yield number and members of each part of the shard; a part has `size` members."""
+        """Yield number and members of the parts that belong to the shard; each part has `size` members."""
         k, n = self.shard
         for number in range(k - 1, -(-len(self.draws) // size), n):
             yield number, tuple(self.draws[number * size : (number + 1) * size])

@@ -138,7 +138,7 @@ class ColumnLevel:
 
     @property
     def zeta(self) -> float:
-        """Coordinate zeta (`BodyMap`), the same at all collars (cells around a wing or fin) of the level."""
+        """Coordinate zeta (`BodyMap`) of all collars (cells around a wing or fin) of the level."""
         return self.levels[0].hole.zeta
 
     @property

@@ -42,7 +42,7 @@ class StripGrid:
         self._panels = panels(eta, height, spread, 1, nj - outer)
 
     def at(self, rows: Sequence[int], j: int) -> Complexes:
-        """Return nodes w in the strip, with indices `rows` along the wall, on a level `j` near the wall."""
+        """Return complex points in the strip: nodes with indices `rows` along the wall, on level `j`."""
         theta = self.theta[list(rows)]
         low = product(self._c, interpolation(self.eta[j : j + 1].tobytes())[:, 0])
         k, high = self._near.at(float(self.eta[j]))

@@ -20,7 +20,7 @@ FEWEST = 256  # columns
 def columns(modes: Complexes) -> Floats:
     """Return values (Q, 2, width) at Q angles, from which windowed sums give m Fourier series at any angle.
 
-    The axes are angle, real and imaginary part, and series, padded with zeros to a multiple of `LANES`.
+    The values f_q have the axes angle, real and imaginary part, and series, padded to a multiple of `LANES`.
 
     `modes` (m, 2 K + 1) have the order k = 0 .. K, -K .. -1. Q is a power of two above 4 K. The sum at theta
     has `TAPS` terms::

@@ -65,7 +65,7 @@ def turns_in_plane(angles: Floats) -> Floats:
 
 
 def turns_in_space(quads: Indices, old: Floats, new: Floats) -> Floats:
-    """Return R - 1 (n, 3, 3); R rotates the quads around a node from positions `old` to `new` (n, 3)."""
+    """Return R - 1 (n, 3, 3), where R rotates the quads around each node from `old` to `new` nodes (n, 3)."""
     before, after = _frames(old[quads]), _frames(new[quads])
     whole = product(after, inverse(before))
     total = np.zeros((len(old), 3, 3))

@@ -104,7 +104,7 @@ def lines_of(pieces: Sequence[Piece]) -> list[Indices]:
 
 
 def elements_of(pieces: Sequence[Piece], dimension: int) -> Indices:
-    """Return the edges (m, 2) of pieces in the plane, or the quadrilaterals (m, 4) of pieces of volumes."""
+    """Return the edges (m, 2) or, in volumes, the quadrilaterals (m, 4) of `pieces` of the outer boundary."""
     if dimension == 2:
         parts = [np.stack([p.numbers[:-1], p.numbers[1:]], axis=1) for p in pieces]
     else:

@@ -50,7 +50,7 @@ class Direction:
 
     @cached_property
     def reach(self) -> Floats:
-        """The longer of the steps to both neighbours of each node (n,)."""
+        """For each node (n,), the longer of the two steps to its neighbours."""
         return np.maximum(*self._steps)
 
     @cached_property
@@ -87,5 +87,5 @@ class Direction:
 
 @lru_cache(maxsize=16)
 def uniform(n: int, periodic: bool) -> Direction:
-    """Return the direction of n equally spaced nodes; it is cached."""
+    """Return the `Direction` for n equally spaced nodes; it is cached."""
     return Direction(np.arange(float(n)), periodic)

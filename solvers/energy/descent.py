@@ -81,7 +81,7 @@ def stiffness_of(nodes: Floats, weights: Weights) -> tuple[Stiffness, tuple[int,
 
 
 def listener_of(nodes: Floats) -> Callable[[int, float, float], None] | None:
-    """Return a function that reports each iteration on `nodes` to listeners; None if there are none."""
+    """Return a function that reports each iteration on `nodes` to listeners; None without listeners."""
     if not listened_to():
         return None
     first = 0.0

@@ -33,7 +33,7 @@ Numbers = TypeVar("Numbers", Floats, Complexes)
 class GrowthLimit:
     """The penalty w Σ max(0, |ρ| - L)² + μ Σ (ρ - ρ0)² for logarithms ρ (..., k) of growth ratios.
 
-    `limit` (a number or array) is L. `wanted` (..., k) is ρ0. `change` is μ. Methods get w as `weight`.
+    `limit` is L. `wanted` (..., k) are the preferred values ρ0. `change` is the weight μ; methods get w.
     """
 
     limit: float | Floats

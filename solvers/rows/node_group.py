@@ -54,7 +54,7 @@ class NodeGroup:
         return values
 
     def at(self, heights: Floats) -> Floats:
-        """Return coordinates s, theta, h (levels, m, 3) (see `Channel`) of nodes at `heights` (levels, m)."""
+        """Return channel coordinates (levels, m, 3), see `Channel`, of the nodes at `heights` (levels, m)."""
         values = np.empty((*heights.shape, 3))
         values[..., :2], values[..., 2] = self.lines.at(heights), heights
         np.clip(values[..., 0], 0.0, 1.0, out=values[..., 0])

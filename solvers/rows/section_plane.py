@@ -79,7 +79,7 @@ class SectionPlane:
 
     @property
     def thickest(self) -> float:
-        """Place u, 0 to 0.5, at which a section is thickest, measured to the place 1 - u opposite."""
+        """Place u where the section is thickest; the leading edge is at 0, the trailing edge at 0.5."""
         u = np.linspace(0.1, 0.4, 61)
         return float(u[int(modulus(self._opposite(u) - self._opposite(1.0 - u)).argmax())])
 
@@ -181,7 +181,7 @@ class SectionPlane:
         return np.interp(shares, _SHARES, self._stations)
 
     def camber(self, shares: Floats) -> Floats:
-        """Return theta (n,) of the mean line at fractions `shares` (n,) of the way along the blade."""
+        """Return angles theta (n,) of the mean line at fractions `shares` (n,) of the way along the blade."""
         u = np.linspace(0.0, 0.5, _AROUND)
         middle = 0.5 * (self._opposite(u) + self._opposite(1.0 - u))
         part = np.maximum.accumulate(self.shares(pairs_of(middle)))

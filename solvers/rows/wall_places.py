@@ -20,13 +20,13 @@ def even_wall_places(
     planes: Sequence[SectionPlane], places: Floats, corners: Floats, growth: float, pairs: Indices,
     lines: ChannelLines, *, opposite: bool,
 ) -> Floats:  # fmt: skip
-    """Return `places` u (k,) clockwise around the blade, moved until steps grow by about `growth` at most.
+    """Return `places` u (k,), 0 to 1 around the blade, moved until steps grow by about `growth` at most.
 
     Parameters
     ----------
     corners : (c,) places of nodes that stay.
     pairs : (p, 2) a node of the upper and a node of the lower side, joined by a line across the channel.
-    lines : mean lines across the channel, from which the lines of pairs should not lean further.
+    lines : mean lines across the channel; the angle between these and the lines of pairs should not grow.
     opposite : whether nodes at u and 1 - u stay opposite each other; `lines` then have no effect.
     """
     limit = MARGIN * math.log(growth)

@@ -77,8 +77,8 @@ class BaseWake:
 def behind_base(body: Airfoil, sampling: Sampling, first: float, growth: float | None) -> BaseWake:
     """Return the lines from which the C grid of a `body` with a blunt trailing edge starts.
 
-    `first` is the first-cell height at wall and base, in the unit of the body. `growth` limits the growth
-    ratio along base and wake. Raises InputError: too few nodes.
+    `first` is the first-cell height at the wall, in the unit of the body. `growth` limits the growth ratio
+    along trailing edge and wake. Raises InputError: too few nodes.
     """
     ratio = 1.0 + _WITHIN * ((growth or GROWTH) - 1.0)
     points = body.curve.points

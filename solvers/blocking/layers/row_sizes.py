@@ -79,7 +79,7 @@ class RowSizes:
         return graded(full, self.arcs, self.loop.length, SLOPE)
 
     def thickness_at(self, arcs: Floats, scale: float, settings: LayerSettings) -> Floats:
-        """Return the thickness (k,) of the layers at arc lengths (k,) of the loop."""
+        """Return the thickness (k,) of layers at arc lengths (k,); `scale` is a factor on cell lengths."""
         return np.interp(arcs, self.arcs, self.thickness(scale, settings), period=self.loop.length)
 
     def thickness_behind(self, away: Floats, scale: float, settings: LayerSettings) -> Floats:

@@ -30,8 +30,8 @@ def growth_of_levels(lines: Floats) -> Floats:
 def slower_steps(steps: Floats, last_growth: Floats, growth: float) -> Floats:
     """Return the `steps` (m,) of a march, changed so that cells that grew too much grow less.
 
-    `last_growth` (m - 1,) is the greatest growth ratio of cells at each inner level after a march with
-    `steps`. `growth` is the limit of this ratio.
+    `last_growth` (m - 1,) is the greatest growth ratio of cells at each inner level of the grid that was
+    marched with `steps`. `growth` is the limit of this ratio.
     """
     length, most = float(steps.sum()), math.log(growth)
     ratio = np.maximum(log(steps[1:] / steps[:-1]), _LEAST * most)

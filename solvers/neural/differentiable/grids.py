@@ -66,8 +66,8 @@ def variational(
 ) -> Tensor:  # fmt: skip
     """Return the nodes (..., ni, nj, 2) at the optimum of the variational functional, up to rounding errors.
 
-    The compiled solver computes the initial grids on the CPU. Gradients are those of the optimum; each
-    backward pass solves one linear system. Gradients take the weights of the functional as constants.
+    The compiled solver computes the initial grids on the CPU. Gradients are derivatives of the optimum; each
+    backward pass solves one linear system. The weights of the functional count as constants.
 
     Parameters
     ----------

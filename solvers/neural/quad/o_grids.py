@@ -26,8 +26,7 @@ def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) ->
     """Return the nodes (batch, 2, 65, 33) of the network's grids for O `boundaries` with equal node counts.
 
     `head` is the index in `encoding.HEADS` of the method that the output of the network imitates. Raises
-    InputError if wall or far field do not wind once around the body's centroid or around another point
-    inside.
+    InputError if wall or far field wind once around neither the body's centroid nor another inner point.
     """
     walls, strips, centres, once = _strips(boundaries)
     if not once.all():

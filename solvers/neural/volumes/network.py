@@ -120,7 +120,7 @@ def _check(header: Mapping[str, Any], arrays: Mapping[str, Floats]) -> None:
 def infer_volume(faces: SixFaces, *, model: str, answer: Answer = "valid") -> Solution:
     """Return the grid inside `faces` by a trained network.
 
-    `answer`: ``raw`` returns the predicted nodes, ``pasted`` replaces their faces by `faces`, ``valid`` also
+    `answer`: ``raw`` returns predicted nodes, ``pasted`` replaces boundary nodes by `faces`, ``valid`` also
     repairs folded cells. Raises InputError: no such model; a geometry on which it was not trained.
     """
     network = load_volume(model)

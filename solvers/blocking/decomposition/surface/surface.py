@@ -164,7 +164,7 @@ def _split(triangulation: Triangulation, triangle: Indices, edge: Indices) -> Tr
 
 
 def join_triangles(triangles: Indices) -> tuple[Indices, Indices]:
-    """Return the neighbour (t, 3) across each edge, and the neighbour's number of this edge; -1 if none."""
+    """Return (t, 3) the triangle beyond each edge, and the edge's index in that triangle; -1 if none."""
     start, stop = triangles.ravel(), triangles[:, NEXT].ravel()
     size = int(triangles.max()) + 1
     key, mate = start * size + stop, stop * size + start

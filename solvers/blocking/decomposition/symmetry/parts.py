@@ -50,8 +50,8 @@ class DomainPart:
     stretches : parts of loops of the whole domain that bound the part.
     holes : indices of the loops of the whole domain inside the part.
     rays : the mirrors that bound the part.
-    copies : for each copy in the whole domain, the mirrors in which the part is reflected, one after another.
-        The first entry is empty: the part itself.
+    copies : for each copy of the part, the mirrors in which it is reflected, in order. The first entry is
+        empty: it is the part itself.
     """
 
     whole: Domain
