@@ -130,7 +130,7 @@ def _naming(name: str, only: set[int] | None = None) -> Iterator[None]:
 
 
 def final_name(part: Path) -> str:
-    """Return the name that the file at the temporary path `part` will get; for other paths, their name."""
+    """Return the name that the file at the temporary path `part` will get; for another path, its name."""
     match = _PART.fullmatch(part.name)
     return match["final"] if match else part.name
 

@@ -46,7 +46,7 @@ class Source:
 
     @property
     def stem(self) -> str:
-        """File name without folder and extension; a shape gets this name if the file does not name it."""
+        """File name without folder and extension; also the name of a shape that has none in the file."""
         if self.path:
             return printable(self.path.stem)
         return "stdin" if self.name == "-" else Path(self.name).stem

@@ -24,7 +24,7 @@ class View:
     every : step between drawn lines; None: selected by the resolution of the picture.
     slice : slice of a volume, ``i=10``, ``k=-1`` or ``x=.5``; None: the walls, or without walls the boundary.
     seen_from : azimuth and elevation of the viewer in degrees, for grids in 3-D; None is `SEEN_FROM`.
-    up : axis that points upwards in the picture, for grids in 3-D; elevation 0 is normal to it.
+    up : axis that points upwards in the picture, for grids in 3-D; elevation 0 is normal to this axis.
     span : fractions (0 at the hub, 1 at the shroud) at which sections of a blade row are drawn.
     meridional : whether the meridional section of a blade row is drawn.
 

@@ -26,7 +26,7 @@ JOINED, UNNAMED = -2, -1
 def owners_of(
     patches: Sequence[Patch], counts: tuple[int, ...], inside: Iterable[tuple[Side, Range]], side: Side
 ) -> NDArray[np.intp]:
-    """Return, for each cell (n,) or (n, m) at a side, the index of the last of `patches` that contains it.
+    """Return, for each cell (n,) or (n, m) at a side, the index of the last patch that contains it.
 
     `inside` lists the connected parts of the sides: the side and index range of each. Cells in these parts
     get `JOINED`. Other cells without a patch get `UNNAMED`. `counts` are the block's node counts.

@@ -91,7 +91,7 @@ def _bends(values: Floats, knots: Floats) -> Floats:
 class LimitedSpline:
     """The cubic spline through `values` (n, ...) at ascending `knots` (n,), limited to be monotone.
 
-    Its slope is 0 at extrema. At other knots, it is the slope of `CubicTable`, limited to three times the
+    At extrema, the slope is 0. At other knots, the slope is as in `CubicTable`, but at most three times the
     slope of the straight line to each neighbour. Hyman, SIAM J. Sci. Stat. Comput. 4 (1983) 645-654.
     """
 

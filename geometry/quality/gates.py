@@ -56,8 +56,8 @@ class Gate:
     def replaces(self, figure: str, compare: str) -> bool:
         """Return whether this gate takes the place of a profile's limit on `figure`.
 
-        It does if it limits the same statistic of the same figure in the same direction (upwards or
-        downwards); `compare` is the comparison of the profile's limit, such as ``<=``.
+        This is so if both limit the same statistic of `figure` in the same direction (upwards or downwards).
+        `compare` is the comparison of the profile's limit, such as ``<=``.
         """
         return (self.metric, self.compare[0], self.statistic) == (figure, compare[0], end_of(compare))
 
@@ -72,7 +72,7 @@ def beyond(value: float, compare: str, limit: float) -> bool:
 
 
 def end_of(compare: str) -> str:
-    """Return the statistic that a gate limits if it names none: ``max`` for ``>``, ``min`` for ``<``."""
+    """Return the default statistic of a gate: ``max`` for ``>``, ``min`` for ``<``."""
     return "max" if compare in (">", ">=") else "min"
 
 

@@ -33,7 +33,7 @@ class DomainShape:
     far_field : whether a far field was added around bodies.
     layout : blocks of the domain, if the input contains them.
     assembled : whether the domain was assembled from several shapes.
-    grid : the multi-block grid of the input, if it is one.
+    grid : the multi-block grid of the input, if the input is a grid.
     """
 
     domain: Domain

@@ -45,8 +45,8 @@ def core_of(fan: Floats, quarters: int, most: int, *, even: bool = False) -> Pol
 
     The core and the rows around it are rounded, as marching requires. An `even` core has no kinks, at which
     cell sizes would change by up to a factor of 2. `quarters` is the angle of the fan around the pole, in
-    right angles. If it is 4, the last line of the fan repeats the first, and m is even. At most `most`
-    columns are replaced.
+    right angles. If `quarters` is 4, the last line of the fan repeats the first, and m is even. At most
+    `most` columns are replaced.
     """
     m = len(fan) - 1
     steps = norms(np.diff(fan, axis=1)).mean(axis=0)

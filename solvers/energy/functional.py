@@ -26,7 +26,7 @@ class Weights:
           + β mean over cells of the squares of (ni-1) Δ_i log l and (nj-1) Δ_j log l, for both l
 
     The first term of T is the discrete harmonic functional, which is infinite at J = 0. The second is 1/sin⁴
-    of the angle. The term with β is the squared gradient of log l; it prevents alternately narrow and wide
+    of the angle. The term with β is the squared gradient of log l, which prevents alternately narrow and wide
     cells. For folded grids, J is replaced by χ = (J + √(J² + ε²)) / 2 > 0.
     """
 

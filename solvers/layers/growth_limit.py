@@ -64,8 +64,8 @@ def damped(values: Callable[[Numbers], Floats], at: Numbers, step: Numbers, part
     """Return the `step` (m,) of m unknowns, with parts of it halved until all values (p,) decrease.
 
     `values` computes p values from the unknowns, which are now `at` (m,). Each unknown affects one value,
-    whose index is in `part` (m,). Steps that affect the same value are halved together, and are 0 if it never
-    decreases.
+    whose index is in `part` (m,). Steps that affect the same value are halved together, and are 0 if the
+    value never decreases.
     """
     start = values(at)
     share = np.ones(len(start))

@@ -52,7 +52,7 @@ class StripNetwork:
 def shapes(inputs: int, outputs: int, width: int, modes: Sequence[int]) -> dict[str, tuple[int, ...]]:
     """Return the shapes of a network's weights by name.
 
-    `modes` has the number of Fourier modes of each hidden layer, and of the output layer at the end.
+    `modes` has the numbers of Fourier modes of the hidden layers, then of the output layer.
     """
     dense = {"lift": (2 * width, inputs, 1), "project": (outputs, width, 1)}
     mixing = {"spectral_out": (modes[-1], width, outputs, 2)}
