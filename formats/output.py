@@ -77,7 +77,7 @@ def whole_file(destination: str, *, make_folder: bool = False, beside: bool = Fa
 
 @contextlib.contextmanager
 def whole_folder(target: Path) -> Iterator[Path]:
-    """Return a context with an empty folder, which replaces `target` if the block succeeds.
+    """Return a context with an empty folder, which replaces `target` when the context ends.
 
     After any exception the new folder is removed and `target` is unchanged.
     """

@@ -63,7 +63,7 @@ def lines(grid: Grid, nodes: Vertices, *, all_measures: bool = True) -> Lines:
 
 
 def lines_of(grid: Grid, parts: list[BlockLines], *, along: bool = True, places: bool = True) -> Lines:
-    """Return growth and turning of all grid lines in `parts`.
+    """Return growth ratios and turning angles on all grid lines in `parts`.
 
     With `along`, percentiles are computed for each direction and wall. With `places`, they are computed for
     nodes inside blocks and on sides.

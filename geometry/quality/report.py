@@ -117,7 +117,7 @@ class QualityReport:
         return replace(self, profile=self.profile.under(_parsed(gates))) if self.profile else self
 
     def broken(self, gates: Gates = ()) -> list[str]:
-        """Return a line for each gate and each check of a profile by which the grid fails.
+        """Return a line for each condition (gate) and each limit of a profile by which the grid fails.
 
         `gates` is one text or several, such as ``max_angle>170`` or ``scaled_jacobian.p01<0.2``: conditions
         that must not hold. A line gives the value, its place and the limit.

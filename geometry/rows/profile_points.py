@@ -48,7 +48,7 @@ def distinct_points(points: Floats) -> Floats:
 
 
 def check_profile(plane: Floats, points: Floats) -> None:
-    """Raise InputError unless a profile goes around a blade; `points` are x, y, z, `plane` m' and theta."""
+    """Raise InputError unless `points` go around a blade; `plane`: their m' (`MeridionalMap`) and theta."""
     size = float(norms(np.ptp(plane, axis=0)))
     steps = norms(plane - np.roll(plane, 1, axis=0))
     if steps[0] > max(_OPEN * size, _STEPS * steps[1:].max()):

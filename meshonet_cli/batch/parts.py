@@ -114,7 +114,7 @@ def deliver_parts(
     outcomes: Outcomes, files: PartFiles, session: Session, written: Callable[[Any, str], None], *,
     skip_existing: bool, whole: bool,
 ) -> None:  # fmt: skip
-    """Report the members of each part when the part is complete, and write the index of all parts.
+    """Report the members of each part (file of a dataset) when it is complete; write the index of all parts.
 
     A part that fails is reported. It is missing from the index until the command is repeated.
 

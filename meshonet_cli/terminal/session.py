@@ -106,7 +106,7 @@ class Session:
             self.result({"input": source, "output": None, "error": line, "exit_code": code})
 
     def judge(self, row: MemberRow) -> None:
-        """Report the gates that a member fails, and keep its row for the table of verdicts."""
+        """Report the user's limits (gates) that a member exceeds; keep its row for the table of verdicts."""
         self.rows.append(row)
         problems = row.judgement.problems if row.judgement else ()
         self.beyond += bool(problems)

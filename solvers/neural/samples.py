@@ -15,7 +15,7 @@ from meshonet.geometry.errors import InputError
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """Solved grids of the same size and topology, with names and splits."""
+    """Solved grids of the same size and topology, with names and splits (training or test)."""
 
     nodes: Floats  # (n, ni, nj, 2), any unit of length
     topology: Topology  # ``quad`` or ``o``

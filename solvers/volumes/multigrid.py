@@ -24,9 +24,9 @@ SWEEPS, FIRST = 12, 30  # on the coarsest level: in a cycle, and to start with
 
 @dataclass(frozen=True, eq=False)
 class Transfer:
-    """Operators along one direction between a level and the next coarser one.
+    """Interpolations along one direction between a multigrid level and the next coarser one.
 
-    An operator has, for each of its results, the index of the first node that contributes, and weights.
+    For each node of a result there are the index of the first node that contributes, and weights.
     """
 
     up: tuple[NDArray[np.intp], Floats]  # (n, 2) linear interpolation to the fine nodes

@@ -55,7 +55,7 @@ class WallCells:
 
 
 def planned_arcs(body: Airfoil, ni: int, sampling: Sampling) -> Floats:
-    """Return the arc lengths (ni,) of wall nodes, with the cell sizes at edges that `sampling` implies."""
+    """Return arc lengths (ni,) of wall nodes; cells at leading and trailing edge are as `sampling` asks."""
     plan = _plan(body, ni - 1, sampling)
     if sampling.spacing == "curvature":
         from meshonet.geometry.spacing.size_field import arcs_by_curvature
