@@ -39,7 +39,7 @@ class Unstructured:
 
 
 def unstructured(grid: Grid) -> Unstructured:
-    """Return `grid`, whose blocks have the same dimension, as an unstructured mesh with merged nodes.
+    """Return `grid` as an unstructured mesh with merged nodes; all blocks must have the same dimension.
 
     Only outer faces belong to the boundary. Unnamed faces get the name of their side.
     """

@@ -12,7 +12,7 @@ from meshonet.geometry.blocks.patches import Patch
 
 
 def wall_surface(grid: Grid) -> Grid:
-    """Return a grid of the patches of a volume that are walls, with normals that point into the volume.
+    """Return the walls of a volume as a grid of a surface, with normals that point into the volume.
 
     Blocks of the volume must be right-handed. Edges of the surface that lie in the plane of symmetry (z = 0
     or y = 0) and are not joined to other edges become the patch ``symmetry``. Blocks are named after the

@@ -31,7 +31,7 @@ class Hollows:
     distance: Floats
 
     def sharpest(self) -> tuple[float, int] | None:
-        """Return the smallest angle of a concave edge, in degrees, and one node of it; None if none is."""
+        """Return the least angle at concave edges, in degrees, and a node there; None without such edges."""
         return self._at(int(self.angles.argmin())) if len(self.edges) else None
 
     def nearest(self, surface: Surface, numbers: Indices) -> tuple[float, int] | None:

@@ -13,7 +13,7 @@ from meshonet_cli.batch.item import Item
 
 
 class Keys:
-    """Unique names of the samples of a dataset, or of a part of it."""
+    """Names of samples, each unique in a dataset or in a part of one."""
 
     def __init__(self) -> None:
         self._names = UniqueNames()

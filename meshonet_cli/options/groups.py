@@ -112,7 +112,7 @@ def numbers(text: str | None, counts: tuple[int, ...], what: str, remedy: str, p
 
 
 def number(text: str, remedy: str, parameter: str) -> float:
-    """Return the text of an option as a number. Raises InputError if it is none."""
+    """Return the text of an option as a number. Raises InputError if it is no number."""
     try:
         return float(text)
     except ValueError:

@@ -27,7 +27,7 @@ Axis = Annotated[str | None, _option(
 
 
 def axis_of(text: str | None) -> "AxisLine | None":
-    """Return the axis in the text of an option, None for None. Raises InputError if it describes none."""
+    """Return the axis in the text of an option, None for None. Raises InputError if the text has no axis."""
     from meshonet.geometry.blocks.revolve import AxisLine
 
     named = {"x": "0,0,1,0", "y": "0,0,0,1"}
@@ -37,7 +37,7 @@ def axis_of(text: str | None) -> "AxisLine | None":
 
 
 def copies_of(text: str | None) -> int | tuple[int, ...]:
-    """Return the number of copies, or one for each period; 1 for None. Raises InputError: other text.
+    """Return the number of copies, or a number for each period; 1 for None. Raises InputError: other text.
 
     >>> copies_of("3x2"), copies_of("23")
     ((3, 2), 23)

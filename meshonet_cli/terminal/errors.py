@@ -6,7 +6,7 @@ _OPTIONS = {
 
 
 def explained(error: Exception, name: str = "") -> str:
-    """Return the message, of one or two lines, about an `error` of the member called `name`."""
+    """Return the message, of one or two lines, about an `error` in the input called `name`."""
     from meshonet.geometry.errors import InputError, MeshonetError, NoValidGridError
 
     if isinstance(error, InputError):

@@ -84,7 +84,7 @@ class BodyMap:
     def places(self, points: Floats, near: Floats | None = None) -> Floats:
         """Return the coordinates s, theta, zeta (..., 3) of `points` (..., 3), by Newton's method.
 
-        The iteration starts from `near` (..., 3), by default from the nearest nodes of the table.
+        The iteration starts from `near` (..., 3), by default from tabulated nodes nearby.
         """
         y, z = points[..., 1] - self.body.y, points[..., 2]
         theta = arctan2(z, -y)

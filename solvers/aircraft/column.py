@@ -208,7 +208,7 @@ class ColumnLevel:
         return self.zeta if self.crown is None else self.crown
 
     def patches(self) -> list[Floats]:
-        """Return the nodes (ni, nj, 3) of the patches around the wing, above it, below it, around the fin."""
+        """Return the nodes (ni, nj, 3) of patches around, above and below the wing, and around the fin."""
         below, above = self.levels[0].long_sides
         zeta = self.zeta
         patches = [_on(self.levels[0].collar(), zeta)]

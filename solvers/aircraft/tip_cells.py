@@ -17,7 +17,7 @@ _STILL = 1e-13  # change of the logarithm of the growth ratio below which the it
 def arcs_beyond(lengths: Floats, first: Floats, cells: int) -> Floats:
     """Return arc lengths (n, cells + 1) of nodes on lines of `lengths` (n,) that start at the tip.
 
-    Cells grow along each line; `first` (n,) are the sizes of the first ones.
+    Cells grow along each line; `first` (n,) are the sizes of the first cells.
     """
     least = float(first.min())
     more = (np.square(np.square(first / least)) - 1.0)[:, None]

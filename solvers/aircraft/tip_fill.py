@@ -33,7 +33,7 @@ def tip_patches(loop: Floats, first: float) -> tuple[Floats, Floats]:
 
 
 def canted_tip_patches(loop: Floats, first: float, cant: float) -> tuple[Floats, Floats]:
-    """Return `tip_patches` for a `loop` whose plane is rotated about x by `cant` radians."""
+    """Return the patches (see `tip_patches`) in a `loop` whose plane is rotated about x by `cant` radians."""
     if not cant:
         return tip_patches(loop, first)
     place, cants = loop[0, 1:], np.array([-cant, cant])

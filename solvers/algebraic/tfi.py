@@ -28,7 +28,7 @@ def tfi(boundary: Boundary, blending: Blending = "arclength") -> Grid:
         u = s_i + (n_i - s_i) v,    v = w_j + (e_j - w_j) u
 
     With the `blending` ``linear``, the parameters are i / (ni - 1). With ``arclength`` they are fractions of
-    the arc length of the edge, which continues its spacing into the interior. Raises InputError if the
+    the arc length of the edge, so that its spacing continues into the interior. Raises InputError if the
     blending is unknown.
     """
     edges = (boundary.south, boundary.north, boundary.west, boundary.east)

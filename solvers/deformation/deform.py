@@ -27,10 +27,10 @@ _MOST = 4096  # crossings looked for; those at the joints of concatenated polyli
 def deform(grid: Grid, walls: Mapping[str, NewWall] | NewWall) -> Solution:
     """Return `grid` deformed to the new shapes of `walls`, with notes.
 
-    Displacements of the boundary are interpolated (`meshonet.solvers.deformation.follow`). If cells fold, the
-    deformation is divided into steps. If cells still fold, they are repaired, and as a last resort nodes
-    outside layers are smoothed. Raises InputError if the grid is a surface, has folded cells or has no wall
-    of a given name, if a new shape is unsuitable, or if walls cross.
+    Displacements of the boundary are interpolated to all nodes (`meshonet.solvers.deformation.follow`). If
+    cells fold, the deformation is divided into steps. If cells still fold, they are repaired, and as a last
+    resort nodes outside layers are smoothed. Raises InputError if the grid is a surface, has folded cells or
+    has no wall of a given name, if a new shape is unsuitable, or if walls cross.
     """
     table = NodeTable.of(grid)
     folded = count_folded_in(grid)

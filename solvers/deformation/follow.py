@@ -140,7 +140,7 @@ def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
 
 
 def sliding_notes(follow: Follow, to: Floats) -> tuple[str, ...]:
-    """Return notes on sides that slide or follow beside a moved wall; `to` (n, d) are new node positions."""
+    """Return notes on sides whose nodes slide or follow beside a moved wall. `to` (n, d): new positions."""
     notes, table = [], follow.table
     for piece in follow.sources.sliding:
         if (to[piece.numbers] == table.nodes[piece.numbers]).all():

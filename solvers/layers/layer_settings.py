@@ -46,7 +46,7 @@ class LayerSettings:
 
     @classmethod
     def limited(cls, first: float, limit: float, **others: Any) -> Self:
-        """Return settings with growth ratios up to `limit` in and outside layers and with `others`."""
+        """Return settings with growth ratios up to `limit`, in layers and elsewhere; `others` are fields."""
         return cls(first, math.exp(NOMINAL * math.log(limit)), limit=limit, **others)
 
     def at(self, names: Collection[str]) -> Self:

@@ -21,7 +21,7 @@ FEWER_NODES = {"winslow": (512, 257), "variational": (257, 129)}
 
 @dataclass(frozen=True)
 class Auto(OneByOne):
-    """Solves by one of three methods; the topology of the boundary selects it."""
+    """Solves by one of three methods, which depends on the topology of the boundary."""
 
     quad: Method
     o: Method

@@ -61,7 +61,7 @@ class SizeMetric:
         return cls(points, normals, across, along, largest, metrics[0].grading, tuple(starts.tolist()))
 
     def length(self, places: Floats, directions: Floats) -> Floats:
-        """Return the target lengths (m,) of edges with midpoints `places` (m, 2) and `directions` (m, 2)."""
+        """Return target lengths (m,) of edges, from midpoints `places` and vectors `directions` (m, 2)."""
         return self.near(places, directions).length(self)
 
     def near(self, places: Floats, directions: Floats) -> Near:

@@ -91,7 +91,7 @@ class StackedRow:
         return second, partner[second]
 
     def beside(self, height: float) -> Floats:
-        """Return s, theta, h (k, 2, 3) of k blade nodes at a `height`, and of the next node off each."""
+        """Return s, theta, h (k, 2, 3) of k blade nodes at a `height`, and of the node next to each."""
         group = self._group(self.columns.ravel(), self.around)
         values = group.at(np.full((1, self.columns.size), height))
         return values.reshape(*self.columns.shape, 3)[:, :2]

@@ -80,7 +80,7 @@ class VolumeTask(Task):
         return torch.cat([0.5 * torch.exp(-self.spread) * both, 0.5 * self.spread.sum()[None]])
 
     def differentiate(self, parts: Tensor, team: Team) -> None:
-        """Compute the gradients of the terms `parts` of the loss; conflicting gradients are projected."""
+        """Compute the gradients of the terms `parts` of the loss; `project` is applied if they conflict."""
         if not self.model.projected:
             super().differentiate(parts, team)
             return

@@ -118,8 +118,8 @@ class Triangulation:
 def split_edges_between_walls(triangulation: Triangulation) -> Triangulation:
     """Return the triangulation with a new vertex on every interior edge that joins two wall vertices.
 
-    Without the new vertices, the map would collapse triangles with two edges on one wall, and no singularity
-    could lie in a gap one triangle wide.
+    Without the new vertices, the map of the triangulation would collapse triangles with two edges on one
+    wall, and would have no singularity in gaps that are one triangle wide.
     """
     boundary = len(triangulation.arc)
     while True:
