@@ -54,7 +54,7 @@ def plot(
     ),
     slice_: str | None = _option(
         "--slice", metavar="SLICE", help="Draw this slice of a volume: a grid surface such as i=10 or k=-1 "
-        "(the last), or a plane such as x=.5. [default: no slice but the walls; without walls the whole "
+        "(the last), or a plane such as x=.5. [default: the walls, not a slice; without walls the whole "
         "boundary]",
     ),
     span: str | None = _option(
@@ -63,7 +63,7 @@ def plot(
     ),
     meridional: bool = _option(
         default=False, help="Draw the meridional section of a blade row, in the coordinates x and r: the "
-        "cells that a half-plane through the axis and the blade cuts.",
+        "cells cut by a half-plane through the axis and the blade.",
     ),
     seen_from: str | None = _option(
         metavar="AZIMUTH,ELEVATION", help="Direction from which volumes and surfaces are seen: azimuth and "
