@@ -21,7 +21,7 @@ def request_from(kind: type[Request], what: str, parameters: Mapping[str, Any]) 
 
 
 def refuse_given(what: str, options: Mapping[str, object]) -> None:
-    """Raise InputError if an option is given (not None or False): `what` has none of the `options`."""
+    """Raise InputError, with `what`, if one of the `options` is given (not None or False)."""
     for name, value in options.items():
         if value is not None and value is not False:
             raise InputError(f"{what} has no {{{name}}}", f"leave {{{name}}} out")

@@ -62,5 +62,5 @@ def plain(value: object) -> object:
 
 
 def connections_text(connections: Iterable[Connection]) -> str:
-    """Return connections as JSON: each is a list of its fields in order; its motion is an object or null."""
+    """Return connections as JSON: a list of fields for each, among them its motion as an object or null."""
     return json.dumps([[*astuple(c)[:-1], asdict(c.transform) if c.transform else None] for c in connections])

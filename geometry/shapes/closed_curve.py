@@ -13,7 +13,7 @@ from meshonet.geometry.shapes.outline import Outline
 
 
 def closed_curve(points: Floats, name: str, places: Sequence[str] = ()) -> Outline | Airfoil:
-    """Return the airfoil or else the outline through `points` (n, 2), without repeated neighbours.
+    """Return the closed curve through `points` (n, 2) as an airfoil if it is one, else as an outline.
 
     `places` has the place of each point in the input.
     """
