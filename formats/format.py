@@ -35,7 +35,7 @@ class Format:
     read_grids, write_grids, write_boundaries, write_layouts : functions; None if not supported.
     sniff : function that recognises a file by its first `HEAD_BYTES` bytes.
     names_patches : whether the format stores the topology and the names of patches.
-    blocks : how planar blocks are written: ``kept``, ``merged`` into an unstructured mesh, or empty: not.
+    blocks : ``kept`` if planar blocks are written as blocks, ``merged`` if as one mesh; empty if never.
     space : kinds of three-dimensional grids that can be read and written.
     many : whether one file can contain several grids or boundaries.
     one_size : whether all samples of a file must have the same node counts and topology.

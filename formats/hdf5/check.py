@@ -93,7 +93,7 @@ class Checked:
         return name in self._file
 
     def kept(self, split: str) -> Sequence[int]:
-        """Return the indices of the samples of a split; of all samples if `split` is empty."""
+        """Return the indices of the samples in a split such as ``test``; of all if `split` is empty."""
         if not split:
             return range(self.count)
         return [k for k in range(self.count) if self.text("split", k) == split]

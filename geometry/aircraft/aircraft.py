@@ -21,8 +21,8 @@ class Aircraft:
     body : Body
         The fuselage: a body of revolution, or a `LoftedBody`.
     wing : Stack or SurfaceWing
-        The wing, by its sections from inside the body to the tip or by its surface. Its longest chord is the
-        unit of the first-cell height and of the far field.
+        The wing, from inside the body to the tip, as sections or as a surface. Its longest chord is the unit
+        of the first-cell height and of the far field.
     name : str, optional
         Name of the aircraft.
     half : bool, optional

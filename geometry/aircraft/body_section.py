@@ -38,7 +38,7 @@ class BodySection:
     exponent : float, optional
         Exponent of the superellipse: 2 gives an ellipse, more a rectangle with rounded corners.
     points : array, optional
-        Points (n, 2) of y and z on the half z >= 0, between keel and crown, in place of a superellipse.
+        Points (n, 2) of y and z, where z >= 0, from bottom to top or back, in place of a superellipse.
 
     Raises
     ------
@@ -86,7 +86,7 @@ class BodySection:
 
     @property
     def middle(self) -> float:
-        """The y half way between keel and crown."""
+        """The y half way between keel (bottom) and crown (top)."""
         return self.y if self.points is None else self.y + 0.5 * float(self.points[0, 0] + self.points[-1, 0])
 
     @property

@@ -121,7 +121,7 @@ class SurfaceWing:
     def line(self, place: float) -> Floats:
         """Return the line (stations, 3) along the span at a `place` around the section.
 
-        The integer part of `place` is an index of `strips`. The rest is a fraction of its arc length.
+        The integer part of `place` is an index of `strips`, the rest a fraction of the strip's arc length.
         """
         return self.lines(np.array([place]))[0]
 

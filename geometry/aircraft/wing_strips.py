@@ -31,7 +31,7 @@ class _Strip:
 
 
 def wing_strips(patches: Sequence[Floats], name: str) -> tuple[tuple[Floats, ...], tuple[int, ...]]:
-    """Return the strips (stations, n, 3) of a `SurfaceWing`, and the indices of patches that close its tip.
+    """Return strips (stations, n, 3) of nodes from root to tip, and indices of patches that close the tip.
 
     `patches` (ni, nj, 3) form the surface of a wing, where z >= 0. Patches on a blunt trailing edge are left
     out. `name` is used in messages.

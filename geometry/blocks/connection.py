@@ -143,7 +143,7 @@ def o_seam(nj: int) -> Connection:
 
 
 def c_wake(ni: int, cells: int) -> Connection:
-    """Return the connection of a C block across its wake, which is `cells` cells at each end of south."""
+    """Return the connection of a C block's south side across the wake, which is `cells` cells long."""
     return Connection(0, "south", ((0, cells),), 0, "south", ((ni - 1 - cells, ni - 1),), (-1,))
 
 

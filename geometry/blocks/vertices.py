@@ -67,7 +67,7 @@ def vertices(grid: Grid) -> Vertices:
 
 
 def irregular_points(grid: Grid) -> tuple[Floats, Indices]:
-    """Return the irregular inner nodes (n, 2) of a grid, and their valence (n,)."""
+    """Return the inner nodes (n, 2) at which more or fewer than four cells meet, and how many (n,) meet."""
     nodes = vertices(grid)
     places = [nodes.place(int(node)) for node in nodes.irregular]
     points = [grid.blocks[block].nodes[i, j] for block, i, j in places]

@@ -33,9 +33,10 @@ def monotone_cubic(x: Floats, values: Floats, at: Floats, *, linear: bool = Fals
 
 
 def piece_at(x: Floats, at: Floats, dimension: int) -> tuple[Indices, Floats, Floats]:
-    """Return, for each of `at` (m,), its interval of `x` (n,), the fraction of this interval, and its length.
+    """Return the interval between knots `x` (n,) in which each of `at` (m,) is, and where in the interval.
 
-    Fraction and length have the shape (m, 1, ...), with `dimension` axes.
+    The results are the index (m,) of the interval, the position as a fraction of the interval, and the
+    interval's length; the last two are (m, 1, ...), with `dimension` axes.
     """
     i = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(x) - 2)
     h, shape = x[i + 1] - x[i], (*at.shape, *(1,) * (dimension - 1))

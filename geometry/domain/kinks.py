@@ -15,7 +15,7 @@ APART = 0.01
 
 
 def with_kinks(domain: Domain) -> Domain:
-    """Return the domain with its polygons' kinks (`find_kinks`) as corners at which two cells meet.
+    """Return the domain with a corner at each kink of its polygons (see `find_kinks`); two cells meet there.
 
     Each kink then has a node, and no cell edge cuts it off.
     """

@@ -23,9 +23,9 @@ from meshonet.geometry.quality.metrics import FACE_NAMES
 
 @dataclass(frozen=True)
 class FaceMeasures:
-    """Statistics of each measure of faces, and the cell with the largest value; None without faces.
+    """Statistics of each measure of faces, and the cell with the largest value; None if no face has it.
 
-    A cell is (i, j), in a multi-block grid (block, i, j), in volumes (block, i, j, k).
+    A cell is (i, j) in a single planar block, (block, i, j) in several, and (block, i, j, k) in volumes.
     """
 
     non_orthogonality: Extreme | None

@@ -50,7 +50,7 @@ class Gate:
         return f"{self._what} is {figure.value:.6g}{figure.where}, which fails {{fail_on}} '{self.text}'"
 
     def in_short(self, figure: Figure) -> str:
-        """Return a text with a figure beyond the limit and with the limit: ``max_angle.max 178.2 > 170``."""
+        """Return a text that compares a figure with the limit: ``max_angle.max 178.2 > 170``."""
         return in_short(self._what, figure, self.compare, self.limit)
 
     def replaces(self, figure: str, compare: str) -> bool:
@@ -67,7 +67,7 @@ class Gate:
 
 
 def beyond(value: float, compare: str, limit: float) -> bool:
-    """Return whether the comparison `compare`, as ``value > limit``, is true, or `value` is NaN."""
+    """Return whether ``value > limit`` is true, with the operator `compare`; always true for NaN."""
     return bool(COMPARE[compare](value, limit)) or value != value
 
 
@@ -152,7 +152,7 @@ def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
 
 
 def parse_gates(texts: Iterable[str] | None, more: Sequence[str] = ()) -> tuple[Gate, ...]:
-    """Return the gates that `texts` describe; figures named in `more` are permitted besides `FIGURES`."""
+    """Return the gates (limits) that `texts` describe; they may name figures in `FIGURES` and in `more`."""
     return tuple(parse_gate(text, more) for text in texts or ())
 
 

@@ -17,7 +17,7 @@ _TINY, _LARGE = 1e-300, 1e30  # ratio of areas next to a cell without area, as i
 
 
 def measure_blocks(grid: Grid, folded: int, *, percentiles: bool = False) -> Quality:
-    """Return the quality of planar blocks or patches, of which `folded` cells are folded."""
+    """Return the quality of planar blocks or patches; `folded` is their number of folded cells."""
     values = metrics_of_blocks(grid)
     metrics = {
         metric.name: summary_of(metric, [cells[k] for cells in values], percentiles)

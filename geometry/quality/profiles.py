@@ -170,7 +170,7 @@ PROFILES: dict[str, tuple[Check, ...]] = {
 
 
 def profile_report(figures: Figures, *profiles: str) -> ProfileReport:
-    """Return the results of `profiles` for a grid. Raises InputError: a name that is not in `PROFILES`."""
+    """Return the results of a grid in `profiles` (sets of limits). Raises InputError: no such profile."""
     for profile in profiles:
         if profile not in PROFILES:
             known = "use one of " + ", ".join(PROFILES)

@@ -147,7 +147,7 @@ class BladeSurface:
         return np.asarray(turned - mean - away * self.pitch)
 
     def lines(self, u: Floats) -> CubicTable:
-        """Return splines of s, theta, h through the profiles, at places `u` (m,) around the blade."""
+        """Return splines of s, theta, h (see `Channel`) along the span, at places `u` (m,) on the blade."""
         values = np.stack([profile.at(u) for profile in self.profiles])
         values[..., 1] += self._turns[:, None]
         return CubicTable(values, self.knots)
@@ -157,9 +157,9 @@ class BladeSurface:
         return self.crossings(self.lines(u.ravel()), h, len(h) if u.ndim == 1 else 1)
 
     def crossings(self, lines: CubicTable, h: Floats, levels: int = 1) -> Floats:
-        """Return s and theta (..., 2) at the heights `h` (...) on m splines, a result of the method `lines`.
+        """Return s and theta (..., 2) at the heights `h` (...) on the m splines from the method `lines`.
 
-        Flattened, `h` is (levels, m): on each level, there is a height for each spline.
+        See `Channel` for s, theta, h. Flattened, `h` is (levels, m): heights of all splines on each level.
         """
         out = np.empty((*h.shape, 2))
         spline_crossings(

@@ -121,7 +121,7 @@ class Row:
 
     @cached_property
     def chord(self) -> float:
-        """Distance between the edges of the longest profile."""
+        """Distance from the leading to the trailing edge of the longest profile."""
         lengths = []
         for points in self.profiles:
             p = np.asarray(points)

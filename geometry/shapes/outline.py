@@ -30,8 +30,8 @@ class Outline:
     """A closed curve through `points` (n, 2), at least 3, in any unit and direction.
 
     `corners` are the indices of the points that are corners of a quad domain, south-west first. `places` (n,)
-    say where the input has the points. Raises InputError: too few points; a point that repeats its neighbour;
-    an outline that crosses itself or has no area.
+    are texts for messages: where in the input a point is. Raises InputError: too few points; a point that
+    repeats its neighbour; an outline that crosses itself or has no area.
     """
 
     far_field_unit = "extents of the body"  # unit of the far-field distance

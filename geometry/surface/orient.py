@@ -17,9 +17,9 @@ def turned_alike(
 ) -> tuple[list[int], list[int], tuple[int, int] | None]:
     """Return which patches to reverse so that each connected part of a surface has one orientation.
 
-    The first list numbers the connected part of each of `count` patches. The second is -1 for each patch to
-    be reversed, else 1. The third result is None, or two patches that show that there is no orientation, as
-    on a Möbius strip. `patch` (4 m,) is the patch of each half-edge, `half_edges` its first and last nodes.
+    The first list has the number of the connected part of each of `count` patches. The second list has -1 for
+    patches to be reversed, else 1. The third result is None, or a pair of patches if no orientation exists.
+    `patch` (4 m,) is the patch of each half-edge. `half_edges` are the half-edges' first and last nodes.
     """
     first, _ = half_edges
     edges = np.flatnonzero(twin > np.arange(len(twin)))

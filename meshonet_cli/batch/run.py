@@ -166,7 +166,7 @@ class Batch:
 
 @dataclass(frozen=True)
 class MemberWork:
-    """Function that computes the results of members and writes each to its own file, in any process."""
+    """Function that computes results for members of a batch, in any process, and writes a file for each."""
 
     make: Make
     destination: Destination | None

@@ -22,7 +22,7 @@ _layer = o.option_of(o.BOUNDARY_LAYER)
 # fmt: off
 @dataclass(frozen=True, kw_only=True)
 class VolumeFiles(Files):
-    """Files of volumes, whose inputs have one format."""
+    """Options for output files of volumes; all inputs have one format, for which there is no option."""
 
     output: o.Output
     to_format: o.To = None

@@ -43,7 +43,7 @@ class Session:
     ----------
     quiet : whether only warnings and errors are printed.
     as_json : whether results are printed as JSON.
-    debug : whether tracebacks of failed members are printed.
+    debug : whether tracebacks are printed for members of a batch that fail.
     """
 
     def __init__(self, *, quiet: bool = False, as_json: bool = False, debug: bool = False) -> None:
@@ -198,7 +198,7 @@ class Session:
             self._line = StageLine(self._draw, self._clear)
 
     def begin(self, name: str, count: int | None = None) -> None:
-        """Show the current member and the number `count` of members; stop the program after a signal."""
+        """Show the current member `name` of a batch of `count` members; stop the program after a signal."""
         check()
         self.members += 1
         if self._line and self.batch:

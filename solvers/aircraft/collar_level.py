@@ -80,7 +80,7 @@ class CollarPlan:
 
 
 def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
-    """Return both results of `corner_nodes`, averaged over `holes` (sections of wings) and rounded."""
+    """Return both numbers that `corner_nodes` returns, as averages over `holes` (sections of wings)."""
     corners = [corner_nodes(hole.plane, hole.box, _CORNER) for hole in holes]
     edge, nose = (round(sum(each) / len(corners)) for each in zip(*corners, strict=True))
     return edge, nose

@@ -116,7 +116,7 @@ class ColumnLevel:
 
     @classmethod
     def of(cls, plan: ColumnPlan, holes: Sequence[Hole]) -> ColumnLevel:
-        """Return the column around `holes`: the section of a wing or of a fin, or of a wing and of a fin."""
+        """Return the patches from keel to crown around `holes`: sections of a wing, a fin, or of both."""
         levels = (CollarLevel.of(*each) for each in zip(plan.collars, holes, strict=True))
         return cls(plan, tuple(levels))
 

@@ -41,7 +41,7 @@ def fine_layout(
     halved: int = 0,
     timings: Timings | None = None,
 ) -> Layout:
-    """Return a layout that is refined to the requested number of cells, with optimised nodes.
+    """Return a block layout, refined to the requested number of cells, with optimised nodes.
 
     Give `cells` or `cell_size`, an edge length; the default is `CELLS` cells. Each cell is then divided into
     four, `halved` times, so that coarser grids are nested. Raises NoValidGridError if cells stay folded.

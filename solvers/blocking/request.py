@@ -27,8 +27,8 @@ class BlockRequest(FirstCell):
 
     Parameters
     ----------
-    cells : number of cells. If `cell_size` and `res` are not given either, the default is `CELLS`, or
-        `LAYERED_CELLS` with layers.
+    cells : number of cells. Without `cell_size` and `res`, it is by default `CELLS`, or with layers
+        `LAYERED_CELLS`.
     res : number of cells along the longest extent of the domain.
     length : reference length of the Reynolds number; None is the extent of the bodies.
     walls : names of the parts of loops with layers; if empty, `Domain.layered_loops` have layers.

@@ -25,7 +25,7 @@ def wall_note(grid: Grid, domain: Domain, names: Collection[str], first: float) 
 
     Parameters
     ----------
-    grid : grid of blocks, or of one ring.
+    grid : multi-block grid or O grid.
     names : names of the walls with layers; if empty, the loops `Domain.layered_loops` have layers.
     first : prescribed height in the domain's unit.
     """

@@ -46,7 +46,7 @@ class Across:
 
 @lru_cache(maxsize=1)
 def across() -> Across:
-    """Return the Chebyshev points and matrices of derivatives across the strip, computed only once."""
+    """Return Chebyshev points and derivative matrices across the strip (conformal image of the domain)."""
     n = LEVELS - 1
     x = elementary.cos(np.pi * np.arange(n + 1) / n)
     c = np.r_[2.0, np.ones(n - 1), 2.0] * (1.0 - 2.0 * (np.arange(n + 1) % 2))

@@ -38,7 +38,7 @@ class CornerPatch:
         self._own = MultigridLevel(x, y, of_xi, of_eta, False, scratch, True)
 
     def smooth(self, forced: bool) -> None:
-        """Relax the nodes of the window in place; the right-hand side is 0 unless `forced`."""
+        """Relax the nodes near the corner in place; the right-hand side is 0 unless `forced`."""
         level, own, window = self._level, self._own, self._window
         own.x[...], own.y[...] = level.x[window], level.y[window]
         if forced:

@@ -43,7 +43,7 @@ WAKE = Weights(smoothness=3e-5)
 
 
 def value(nodes: Floats, weights: Weights) -> float:
-    """Return the functional E for planar `nodes` (ni, nj, 2) of a four-sided grid; infinite if folded."""
+    """Return the variational functional of four-sided `nodes` (ni, nj, 2); infinite if cells are folded."""
     z = np.moveaxis(nodes, -1, 0)
     terms = aspect_of(nodes), weights.shape, weights.smoothness, 0.0, False, None
     return variational_energy(z, *terms, np.empty_like(z))[0]

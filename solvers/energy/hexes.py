@@ -39,7 +39,7 @@ class Slides:
         return cls(np.empty(0, dtype=np.intp), np.empty((0, 3, 3)))
 
     def among(self, nodes: Indices) -> "Slides":
-        """Return those sliding nodes that are in sorted `nodes` (m,); their indices are positions in it."""
+        """Return the sliding nodes that are among sorted `nodes` (m,), each with its position in `nodes`."""
         place = np.minimum(np.searchsorted(nodes, self.nodes), len(nodes) - 1)
         some = nodes[place] == self.nodes
         return Slides(place[some], self.projections[some])

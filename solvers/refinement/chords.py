@@ -73,7 +73,7 @@ class Chords:
 
     @cached_property
     def multiple(self) -> Indices:
-        """Divisor (chords,) of the cell count of each chord (set of opposite edges) in a symmetric layout."""
+        """Number (chords,) by which each chord's cell count must be divisible, to keep a layout symmetric."""
         multiple = np.ones(self.count, dtype=np.intp)
         for k, edge in enumerate(self.edges):
             own = sum(np.array_equal(distinct(to[edge]), distinct(edge)) for to in self.images)

@@ -58,6 +58,6 @@ class ChannelLines:
         return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
 
     def aside(self, pairs: Floats) -> Floats:
-        """Return, for pairs of places u1 and u2 (p, 2), u of the place opposite u1, minus u2 (p,)."""
+        """Return u' - u2 (p,) for pairs of places u1, u2 (p, 2); u' is opposite u1 across the channel."""
         upper, lower = (wrapped(each, _FROM) for each in (pairs[:, 0], 1.0 - pairs[:, 1]))
         return np.asarray(lower - np.interp(upper, self.upper, self.lower))

@@ -40,7 +40,7 @@ UNEVEN = 3.3, 3.9
 
 @dataclass(frozen=True, eq=False)
 class GapFill:
-    """Five blocks inside the outline of a blade, in a gap."""
+    """Five blocks that fill the outline of a blade in the gap to the hub or the casing."""
 
     outline: Indices  # (k,) indices in the given outline, clockwise from side 0; first nodes of `layout`
     layout: Layout  # the five blocks, the core last

@@ -81,7 +81,7 @@ def smooth_arcs(lengths: Floats, ends: tuple[Floats | float, Floats | float | No
 def smooth_cells(
     length: Floats | float, ends: tuple[Floats | float, Floats | float | None], growth: float, least: int
 ) -> int:
-    """Return how many cells `smooth_arcs` needs for ratios of at most `growth`; `least` or more.
+    """Return the number of cells, at least `least`, with which `smooth_arcs` has ratios up to `growth`.
 
     `length` and the cell lengths `ends` are numbers, or (n,) for n lines.
     """

@@ -29,7 +29,7 @@ def whole_section(
     beyond : layout of the blocks beyond the layers, in m' (see `MeridionalMap`) and theta.
     layers : number of layers.
     largest : length of the longest cells.
-    longest : greatest length in all sections of the rows to inlet and to outlet, by index of their loop; it
+    longest : for the loops at inlet and outlet, by index, the greatest length of the rows in any section; it
         determines the number of cells.
     """
     cascade = plane.cascade

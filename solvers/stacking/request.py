@@ -25,15 +25,15 @@ class StackRequest(VolumeRequest):
     span : int, optional
         Number of nodes from the first section to the last; by default 49, or more in ducts and blades.
     cells : int, optional
-        Approximate number of cells around a wing or blade, instead of `around`, `span` or both.
+        Approximate number of cells around a wing or blade; `around` and `span` follow from it if not given.
     base : float, optional
         Smallest height of trailing edges, in chords of each section; thinner edges are opened. The default
         is 0.005, or 0.001 for a wing from a surface file.
     first_cell : float, optional
         First-cell height at every wall node; by default 1e-3.
     y_plus, reynolds, chord_fraction : float, optional
-        First-cell height as y+ on a turbulent flat plate, at this fraction of its length. The Reynolds number
-        is that of the longest chord, or of the widest section of a duct.
+        First-cell height as y+ on a turbulent flat plate, at the fraction `chord_fraction` of its length. The
+        Reynolds number is that of the longest chord, or of the widest section of a duct.
     layers : int, optional
         Number of nodes along each line from the wall, with the wall node; by default as `growth` requires.
     growth : float, optional

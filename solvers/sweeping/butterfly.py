@@ -45,7 +45,7 @@ class CrossSection:
     first: float | None = None  # first-cell height at the wall; None: about that of the core's cells
 
     def inner(self, core: float, radial: float) -> list[Floats]:
-        """Return the nodes (n, 2) on each of the four sides of a core; for parameters, see `FiveBlocks`."""
+        """Return the nodes (n, 2) on each side of the central block; for parameters, see `FiveBlocks`."""
         middle = np.concatenate([arc[:-1] for arc in self.arcs]).mean(axis=0)
         u = np.linspace(-1.0, 1.0, len(self.arcs[0]))
         t = (0.5 + 0.5 * ((1.0 - radial) * u + radial * tan(0.25 * np.pi * u)))[:, None]

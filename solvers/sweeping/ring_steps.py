@@ -52,8 +52,8 @@ def fewest_rows(lengths: Floats, sizes: Floats, first: float | None, growth: flo
 def largest_ratio(lengths: Floats, sizes: Floats, steps: Floats) -> float:
     """Return the largest ratio of neighbouring cell lengths on k lines; infinite if cells do not fill a line.
 
-    `lengths` (k,) are the lengths of the lines, and `steps` (k, rows) those of the cells on them. The cell
-    that follows the end of each line has the length `sizes` (k,).
+    `lengths` (k,) are the lengths of the lines, `steps` (k, rows) the lengths of the cells along them, and
+    `sizes` (k,) the length of the next cell beyond the end of each line.
     """
     if np.abs(steps.sum(axis=1) - lengths).max() > _CLOSE * lengths.max():
         return math.inf

@@ -28,7 +28,7 @@ def uniform_laws(counts: tuple[int, int, int]) -> Laws:
 
 
 def arc_laws(faces: SixFaces) -> Laws:
-    """Return relative arc lengths along edges, arranged as by `uniform_laws`. InputError: repeated nodes."""
+    """Return relative arc lengths, arranged as in `uniform_laws`. Raises InputError: repeated nodes."""
     xi, eta, zeta = (_arcs(faces.edges_along(axis)) for axis in range(3))
     return xi, eta, zeta
 

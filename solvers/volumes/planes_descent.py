@@ -14,8 +14,8 @@ from meshonet.solvers.energy.hexes import HexProblem, Slides, descent_of
 class PlanesDescent(HexProblem):
     """Minimisation over the inner nodes of a volume `planes` (3, ni, nj, nk), in place.
 
-    The target length of the edges of a direction is the mean step along the volume's edges of this direction.
-    With `cubes`, all directions have the same target length.
+    In each direction, the target length of cell edges is their mean length on the volume's edges. With
+    `cubes`, all directions have the same target length.
     """
 
     def __init__(self, planes: Floats, cubes: bool = False) -> None:

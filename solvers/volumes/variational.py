@@ -47,8 +47,8 @@ def variational(
     coarse : largest number of nodes per direction on this level; "auto": 33; None: all nodes of the faces.
     energy : ``angles``, for right angles and gradual changes of length, or ``shape``, for cells like cubes.
 
-    Raises InputError if a setting is not positive, if an edge has no length, or if cells at a node of the
-    faces are folded wherever inner nodes are.
+    Raises InputError if a setting is not positive, if an edge has no length, or if the faces are such that a
+    cell is folded wherever the inner nodes are.
     """
     begun = time.perf_counter()
     _check(max_cycles, coarse, energy)

@@ -31,7 +31,7 @@ _BODY = """{body}
 def write_page(path: Path, grid: Grid, metric: str | None = "max_angle", view: View | None = None) -> None:
     """Write an interactive HTML page of `grid`, which initially shows this `metric` and `view`.
 
-    Raises InputError if the cells do not have the metric, or if the view has no cells or another dimension.
+    Raises InputError if the cells do not have the metric, or if the view does not suit the grid.
     """
     start = _start(grid, metric, view or View())
     chosen = start["slice"]

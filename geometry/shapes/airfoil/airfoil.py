@@ -234,7 +234,7 @@ class Airfoil:
         return Airfoil(section, self.name, notes=self.notes)
 
     def opened(self, thickness: float) -> Airfoil:
-        """Return the airfoil with a base at least `thickness` chords thick."""
+        """Return the airfoil with a trailing edge at least `thickness` chords thick."""
         height = self.gap / self.chord
         if height >= thickness * (1.0 - 1e-3):  # opened before, in chords a little longer
             return self

@@ -215,7 +215,7 @@ def _wake_cells(
 
 
 def corner_cell(cells: float, first: float, chord: float) -> float:
-    """Return the length of wall cells at a base: `first`, or more if `cells` cells would grow too fast."""
+    """Return the length of wall cells at a blunt trailing edge: `first`, or more if growth is too fast."""
     side = 0.5 * cells
     return max(first, chord / side * math.pow(_STEEP, -0.5 * side))
 

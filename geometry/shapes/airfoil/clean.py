@@ -51,8 +51,8 @@ def clean_section(points: Floats) -> CleanSection:
     """Return the section through `points` (n, 2), which are in clockwise or anticlockwise order.
 
     The first point is taken as the trailing edge unless the opposite end is clearly sharper. Repeated points
-    and points on a straight base are removed. Neighbours in the wrong order are swapped. Raises InputError:
-    fewer than 4 distinct points; no area; ends too far apart for a trailing edge.
+    and points on a straight, blunt edge are removed. Neighbours in the wrong order are swapped. Raises
+    InputError: fewer than 4 distinct points; no area; ends too far apart for a trailing edge.
     """
     raw = np.asarray(points, dtype=np.float64)
     extent = float(np.hypot(*np.ptp(raw, axis=0))) if len(raw) else 0.0

@@ -45,7 +45,7 @@ def swapped_note(section: CleanSection, places: Sequence[str]) -> tuple[str, ...
 def section_curve(
     section: CleanSection, places: Sequence[str]
 ) -> tuple[Curve, tuple[str, ...], InputError | None]:
-    """Return the curve through the points of a section, notes, and an error if its surfaces cross (or None).
+    """Return the curve through a section's points, notes, and the error that its surfaces cross, or None.
 
     Surfaces that cross only by rounding are moved apart (see `shapes.airfoil.separate_surfaces`). Intervals
     in which the curve would cross itself are made straight.
@@ -153,10 +153,10 @@ def _oblique_base(section: CleanSection, chord: float) -> tuple[str, ...]:
 
 
 def base_note(wall: Floats, corner: Floats, base: float, chord: float, *, fixed: bool) -> tuple[str, ...]:
-    """Return a note if a base uses most nodes, or if cell sizes jump at its lower corner.
+    """Return a note if a base (blunt trailing edge) uses most nodes, or if cell sizes jump at its corner.
 
-    `wall` (n, 2) runs from the middle of the base. `base` is the length of the base, `corner` (2,) its lower
-    corner. `fixed` says that the user gave the number of nodes on the base.
+    `wall` (n, 2) are the wall nodes, which begin in the middle of the base. `base` is the length of the base,
+    `corner` (2,) its lower corner. `fixed` says that the user gave the number of nodes on the base.
     """
     steps = norms(np.diff(wall, axis=0))
     arcs = np.cumsum(steps)
@@ -190,7 +190,7 @@ def opened_note(height: float, thickness: float) -> str:
 
 
 def edge_notes(before: Airfoil, after: Airfoil, te: TrailingEdge, option: TrailingEdge) -> tuple[str, ...]:
-    """Return a note on how treatment `te` changed the base, or that the user's `option` has no effect."""
+    """Return a note: how treatment `te` changed the trailing edge, or that `option` has no effect."""
     base = f"the outline is changed: its base, {before.gap / before.chord:.3g} chords wide,"
     if before.blunt and te == "wedge":
         length = float(np.hypot(*(after.trailing_edge - before.trailing_edge))) / before.chord

@@ -27,8 +27,8 @@ def moved_apart(ring: Floats, nose: int) -> Floats:
 def wedged_apart(ring: Floats, nose: int, thin: float) -> Floats:
     """Return a closed polygon (n, 2) that is at least as thick as a wedge near its trailing edge.
 
-    The wedge begins with the thickness of the base, and ends where the polygon `ring` has the thickness
-    `thin`.
+    The wedge begins at the trailing edge, with the edge's thickness, and ends where the polygon `ring` has
+    the thickness `thin`.
     """
 
     def least(places: Floats, thickness: Floats) -> Floats:

@@ -130,7 +130,7 @@ def wedged_base(section: CleanSection, tangents: tuple[Floats, Floats]) -> Clean
 
 
 def opened_base(airfoil: Airfoil, gap: float) -> CleanSection:
-    """Return a section with a base of height `gap`; points move in proportion to distances from the nose."""
+    """Return the section, changed gradually from the nose on to a blunt trailing edge of height `gap`."""
     curve, section = airfoil.curve, airfoil._section
     points, knots, index, corners = curve.points, curve.knots, section.index, section.corners
     if airfoil.blunt:

@@ -34,9 +34,9 @@ def shared(
     work: Callable[[Iterable[Item[Any]]], Iterator[Pair]], todo: Iterator[Item[Any]], size: int,
     engine: Engine, warn: Warn,
 ) -> Iterator[Pair]:  # fmt: skip
-    """Yield each member in `todo` with its result; `work` runs on the workers of `engine`.
+    """Yield each member of the batch `todo` with its result; `work` runs on the workers of `engine`.
 
-    Members keep the order of `todo`. A task consists of `size` members, or of several fast ones if it is 1.
+    Members keep the order of `todo`. A task has `size` members; if `size` is 1, fast members share a task.
     """
     timed, grows, most = _Timed(work), size == 1, size
 

@@ -36,7 +36,7 @@ def openings(z: Any, xp: Any) -> Any:
 
 @lru_cache(maxsize=16)
 def fading(m: int, n: int) -> Floats:
-    """Return factors (4, m, n) that fall from 1 to 0 over the nodes away from each of the four corners."""
+    """Return factors (4, m, n) at m x n nodes, which fall from 1 to 0 away from each of the four corners."""
     cells = np.maximum(*np.ogrid[0.0:m, 0.0:n])
     first = np.clip((FAR - cells) / (FAR - NEAR), 0.0, 1.0)
     return np.stack([first, first[:, ::-1], first[::-1], first[::-1, ::-1]])

@@ -98,7 +98,7 @@ class WallLayers:
 
     @cached_property
     def of_rows(self) -> tuple[LayerSettings, ...]:
-        """Settings of the layers in rows of blocks: for each of the loops `sheets`, then of `stretches`."""
+        """Settings of the layers in rows of blocks: around the loops `sheets`, then on parts `stretches`."""
         loops = self.domain.loops
         names = [loops[k].names for k in self.sheets] + [s.names(loops[s.loop]) for s in self.stretches]
         return tuple(map(self.settings.at, names))

@@ -20,7 +20,7 @@ class Equations(Protocol):
         ...
 
     def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the solutions (batch, 2, ni, nj), and the weight (batch,) of smoothness in each, or 0.
+        """Return the solutions (batch, 2, ni, nj), and the smoothness weight (batch,) of each, 0 if none.
 
         Only the boundary nodes of `nodes` are used. Raises MemberError if a grid has no solution.
         """

@@ -106,9 +106,9 @@ def fit(
 ) -> int:
     """Train `task` in place, and return the epoch from which its final weights come.
 
-    With `plan.patience` the final weights have the least held-out loss. The file `checkpoint` is written
-    every `plan.checkpoint_every` epochs. With `resume`, training continues from this file; the settings in
-    the file must then equal `facts`. `report` is called every `plan.log_every` epochs and at the end. Raises
+    With `plan.patience`, the final weights have the least loss on held-out shapes. The file `checkpoint` is
+    written every `plan.checkpoint_every` epochs. With `resume`, training continues from this file, if it has
+    the settings `facts`. `report` is called every `plan.log_every` epochs and at the end. Raises
     InputError if settings differ, or if `plan.patience` is set without held-out shapes. Raises SolverError if
     a loss or weight is not finite, or if memory is too small; the last checkpoint is then kept.
     """

@@ -63,7 +63,7 @@ class QuadUNet(NamedParameters, UNet[Tensor]):
 
     `widths` has the number of channels of each level, divided by 8; the finest level comes first. Each level
     has half as many nodes per direction as the level before. `blocks` has the number of residual blocks of
-    each level, equal on the way down and up. With `around`, O grids have features that are periodic along xi.
+    each level, equal on the way down and up. With `around`, grids are O grids, with features periodic in xi.
     """
 
     def __init__(self, widths: Sequence[int], blocks: Sequence[int], around: bool = False) -> None:

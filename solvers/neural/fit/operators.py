@@ -108,7 +108,7 @@ class OperatorTask(ModelTask):
 
 
 def differences(model: Architecture, samples: Samples) -> Floats:
-    """Return the grids minus the base grids (n, ni, nj, 2), to which the model adds its output."""
+    """Return the differences (n, ni, nj, 2) of grids from base grids, to which the model adds its output."""
     if model.base == "none":
         return samples.nodes
     return samples.nodes - np.array([extend(boundary) for boundary in samples.boundaries()])

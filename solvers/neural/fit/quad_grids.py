@@ -48,8 +48,8 @@ class Quads:
 def quads_of(datasets: Iterable[Iterable[Grid]]) -> Quads:
     """Return the domains for which `datasets` have a grid by ``winslow`` and a grid by ``variational``.
 
-    The first grid determines the method of a dataset. Raises InputError if a method is missing or is none of
-    these, and as `quads`.
+    The first grid determines the method of a dataset. Raises InputError if one of the two methods is missing,
+    if there is another method, and as `quads`.
     """
     groups: dict[str, list[Grid]] = {}
     for dataset in datasets:

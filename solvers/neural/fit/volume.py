@@ -33,7 +33,7 @@ HELD_OUT = 0
 
 
 class VolumeTask(Task):
-    """Training of a network per volume; `points` are the numbers of points per step, inside and on faces."""
+    """Training of a network per volume; `points` are numbers of points per step: inside, and on the faces."""
 
     parts = ("winslow", "faces", "weights")
 

@@ -135,8 +135,8 @@ def _waves(ni: int, nj: int, modes: int, padding: int) -> tuple[NDArray[Any], Fl
 class KNO(AlongXi):
     """Koopman neural operator along xi; `width` is the number of observables.
 
-    K multiplies each of the lowest Fourier modes of the observables by the same matrix. W restores the other
-    modes. ::
+    K multiplies the observables' lowest Fourier modes, each by the same matrix. W restores the other modes.
+    ::
 
         h = g;  `steps` times: h <- h + K h;  g <- tanh(h + W g + b)
 

@@ -56,12 +56,12 @@ class SeamlessMap:
 
 
 def seamless_map(domain: Domain, count: int = 1500, seed: int = 0, fewer: bool = True) -> SeamlessMap:
-    """Return coordinates u, v on a triangulated domain, whose lines follow the walls (see `SeamlessMap`).
+    """Return a map from a triangulated domain to coordinates u, v; walls are lines of constant u or v.
 
     There are about `count` vertices; the triangulation depends on `seed`. Some triangles may be folded in the
     map. If `fewer` is true, the number of singularities is reduced.
 
-    Raises SolverError if the field or the map has no solution; InputError if triangulation is impossible.
+    Raises SolverError if there is no such map; InputError if triangulation is impossible.
     """
     surface = split_edges_between_walls(triangulate(domain, count, seed=seed))
     field = cross_field(surface, fewer)

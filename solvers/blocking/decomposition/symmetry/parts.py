@@ -63,7 +63,7 @@ class DomainPart:
 
 
 def spans_between(loop: Loop) -> list[Span]:
-    """Return the parts of a loop that begin and end at corners with one cell; corners between have two."""
+    """Return the parts of a loop between corners with one cell; corners inside a part have two cells."""
     corners = zip(loop.corner_arcs.tolist(), loop.corner_cells.tolist(), strict=True)
     turns = [(arc, cells) for arc, cells in corners if cells != 2]
     pairs = pairwise([*turns, *((arc + loop.length, cells) for arc, cells in turns[:1])])
