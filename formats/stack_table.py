@@ -109,7 +109,7 @@ def along(row: Table, direct: str, angle: str, z: float, before: list[Section]) 
 def section_shape(row: Table, folder: Path) -> Airfoil | Outline:
     """Return the shape of a section from its table; paths are relative to `folder`.
 
-    Raises InputError unless the table has one key, `airfoil` or `outline`, whose file has one such shape.
+    Raises InputError unless the table has one of the keys `airfoil` and `outline`, for exactly one shape.
     """
     keys = [key for key in ("airfoil", "outline") if key in row.data]
     remedy = "name one file, or a designation such as naca:2412"

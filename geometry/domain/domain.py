@@ -57,17 +57,17 @@ class Domain:
     def of_polygons(
         cls, polygons: Sequence[Floats], name: str = "", names: Sequence[str | Sequence[str]] = ()
     ) -> Self:
-        """Return the domain inside the first polygon and outside the others, which run in either direction.
+        """Return the domain inside the first polygon and outside all further polygons.
 
         Parameters
         ----------
         polygons : sequence of array (n, 2)
-            Points of each polygon. A point at which the polygon turns by more than 30 degrees is a corner.
+            Points of each polygon, in either direction. Turns of more than 30 degrees are corners.
         name : str, optional
             Name of the domain.
         names : sequence, optional
-            For each polygon either one name, or a list with one name for each part between two corners, in
-            the order of the points, starting at the first corner. Default: ``outer``, ``body``, ``body2`` ...
+            For each polygon one name, or a list of names of its parts between corners, from the first corner
+            on, in the order of the points. Default: ``outer``, ``body``, ``body2`` ...
 
         Raises
         ------

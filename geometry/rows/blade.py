@@ -42,8 +42,8 @@ class BladeSurface:
 
     The attribute `notes` says what was changed.
 
-    Raises InputError, with the number of the profile from 1: profiles in another order, crossing, or too far
-    from hub and casing; also as `BladeProfile`.
+    Raises InputError, with the number of the profile from 1: profiles that are in another order, cross, or
+    are too far from hub and casing; also as `BladeProfile`.
     """
 
     def __init__(self, profiles: Sequence[Floats], channel: Channel, blades: int) -> None:

@@ -71,9 +71,9 @@ def wake_axis(leading_edge: Floats, trailing_edge: Floats) -> Floats:
 def wake_line(wall: Floats, axis: Floats, chord: float, length: float, first: float, cells: int) -> Floats:
     """Return the nodes (cells + 1, 2) of a wake from the sharp trailing edge of a closed `wall` (n, 2).
 
-    With x along the `axis` and y to its left, the wake is y = tan(b) l (1 - exp(-x/l)). Here b is the angle
-    of the bisector of the edge (at most 34°), and l is the chord. The first cell has the length `first`. The
-    wake has the extent `length` along the axis.
+    With x along the `axis` and y to its left, the wake is y = tan(b) l (1 - exp(-x/l)). Here b (at most 34°)
+    is the angle from the axis to the edge's bisector, and l is the chord. The first cell has the length
+    `first`. The wake has the extent `length` along the axis.
     """
     upper, lower = wall[0] - wall[-2], wall[0] - wall[1]
     along = upper / np.hypot(*upper) + lower / np.hypot(*lower)
