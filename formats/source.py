@@ -106,9 +106,9 @@ def open_source(text: str) -> Source:
     """Return the source called `text`: a path, ``-`` for standard input, or ``FILE.zip/MEMBER``.
 
     Of a dataset, ``FILE#test`` or ``FILE#train`` selects a split, ``FILE#7`` a sample (counted from 0),
-    ``FILE#5:9`` or ``FILE#5::2`` a range, and ``FILE#test,0:9`` a range of a split. If a file with the whole
-    name exists, it is meant. Raises InputError if the file does not exist, is a folder, is unreadable or is
-    empty.
+    ``FILE#5:9`` or ``FILE#5::2`` a range, and ``FILE#test,0:9`` a range of a split. A file with the whole
+    text as its name is preferred. Raises InputError if the file does not exist, is a folder, is unreadable or
+    is empty.
     """
     split, rows = "", None
     if "#" in text:

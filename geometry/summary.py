@@ -23,8 +23,8 @@ class Summary:
 class Quality:
     """Quality of a grid: the numbers of cells and of folded cells, and every metric by its name.
 
-    `bezier_folded` is the number of cells of volumes that may be folded inside, because a Bezier coefficient
-    of the Jacobian is not positive. It is None in the plane and on surfaces.
+    `bezier_folded` is the number of cells of a volume that may be folded inside, because a Bezier coefficient
+    of the Jacobian is not positive. In the plane and on surfaces, `bezier_folded` is None.
     """
 
     cells: int

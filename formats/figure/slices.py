@@ -83,7 +83,7 @@ def layers(grid: Grid, at: Slice, values: list[Floats] | None) -> list[CellSheet
 
 @dataclass(frozen=True, eq=False)
 class Cut:
-    """Polygons (n, 12, 2) in which a plane cuts n cells, with repeated last corners; cell values (n,)."""
+    """Polygons (n, 12, 2) in which a plane cuts n cells, padded by their last corner; cell values (n,)."""
 
     polygons: Floats
     values: Floats | None

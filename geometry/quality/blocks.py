@@ -20,7 +20,7 @@ class BlockCounts:
     """Blocks and irregular vertices of a grid.
 
     `sizes` are the node counts of each block. `irregular` lists the inner nodes (block, i, j) at which more
-    or fewer than four cells meet, each with its number of cells. It is None for volumes.
+    or fewer than four cells meet, each with its number of cells. For volumes, `irregular` is None.
     """
 
     sizes: tuple[tuple[int, ...], ...]

@@ -18,8 +18,8 @@ from meshonet.geometry.spacing.y_plus import first_cell
 class Flow:
     """The flow for which y+ is computed, from the wall shear stress in the middle of a turbulent flat plate.
 
-    `reynolds` is the Reynolds number of the reference length, and `length` this length in the unit of the
-    grid. Raises InputError: a value out of its range.
+    `reynolds` is the Reynolds number of a reference length, which is `length` in the unit of the grid. Raises
+    InputError: a value out of its range.
     """
 
     reynolds: float

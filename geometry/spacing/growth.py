@@ -12,7 +12,7 @@ LARGEST = 10.0  # largest growth ratio that is accepted
 
 
 def check_growth(growth: float | None, most: float = LARGEST) -> None:
-    """Raise InputError for a growth ratio that is not above 1, or above `most`."""
+    """Raise InputError unless a growth ratio is greater than 1 and at most `most`."""
     if growth is not None and not 1.0 < growth <= most:
         remedy = f"give the ratio of neighbouring cells, such as 1.15, at most {most:g}"
         raise InputError(f"a growth of {growth:g}", remedy, parameter="growth")

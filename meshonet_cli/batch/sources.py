@@ -109,7 +109,7 @@ def _entries(
 def assembly(
     inputs: Inputs, read: Callable[[str], Iterator[Shape]], sampling: Sampling, session: Session
 ) -> Iterator[Item[Shape]]:
-    """Yield the single domain that the shapes of all inputs form; after a reported error, nothing."""
+    """Yield the single domain that the shapes of all inputs form; nothing if an error was reported."""
     from meshonet.geometry.shapes.assembly import assembled
 
     label = " + ".join(inputs.words)

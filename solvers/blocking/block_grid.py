@@ -112,7 +112,7 @@ def _counts(chords: Chords, least: Indices, wanted: float, size: float | None, h
 
 
 def cut_off(fine: Layout, area: float = 0.0) -> float:
-    """Return the area lost along curved walls because cells have straight edges, divided by `area`.
+    """Return the fraction of `area` that is lost along curved walls because cells have straight edges.
 
     The result is negative if the cells cover more than `area`. The default of `area` is the area of the
     domain with straight lines between the points of its boundary.

@@ -75,7 +75,7 @@ class Cascade:
 
     @property
     def left(self) -> complex:
-        """Displacement to the next blade on the left of the flow."""
+        """Displacement to the next blade to the left, seen in the direction of the flow."""
         pitch = complex(*self.pitch)
         return -pitch if self.opposite else pitch
 

@@ -27,7 +27,7 @@ class StackRequest(VolumeRequest):
     cells : int, optional
         Approximate number of cells around a wing or blade; `around` and `span` follow from it if not given.
     base : float, optional
-        Smallest height of trailing edges, in chords of each section; thinner edges are opened. The default
+        Smallest height of trailing edges, in chords of each section; thinner edges are thickened. The default
         is 0.005, or 0.001 for a wing from a surface file.
     first_cell : float, optional
         First-cell height at every wall node; by default 1e-3.

@@ -33,7 +33,7 @@ class Stretch:
         return begin, end if end > begin else end + loop.length
 
     def names(self, loop: Loop) -> tuple[str, ...]:
-        """Return the names of the loop's pieces, from corner to corner, that make up this part of it."""
+        """Return the names of the pieces, each from corner to corner, that make up this part of a loop."""
         count = len(loop.corners)
         parts = range(self.first, self.first + ((self.last - self.first - 1) % count) + 1)
         return tuple(loop.names[k % len(loop.names)] for k in parts)

@@ -74,7 +74,7 @@ class OperatorTask(ModelTask):
         return parts if penalty is None else torch.cat([parts, penalty.float()[None]])
 
     def validate(self) -> dict[str, float]:
-        """Return the loss over held-out shapes, and the mean square error of their nodes, by name."""
+        """Return, by name, the loss over held-out shapes and the mean square error of their grids' nodes."""
         if self.held_out is None:
             return {}
         inputs, goal = self.held_out
