@@ -117,7 +117,7 @@ class Map(NamedTuple):
 
 
 def read_map(path: Path, dims: Sequence[tuple[int, int, int]]) -> Map:
-    """Return the content of a neutral map file. Raises InputError: it does not fit the node counts `dims`."""
+    """Return faces and connections from a map file. Raises InputError: they do not fit node counts `dims`."""
     name = printable(path.name)
     try:
         if path.stat().st_size > _MOST_BYTES:

@@ -109,7 +109,11 @@ class BladeProfile:
         return shortest_ways(arcs - edge, length)
 
     def reshaped(self, plane: Floats, heights: Floats) -> Self:
-        """Return the profile through points `plane` (n, 2), m' (`MeridionalMap`) and theta, at `heights`."""
+        """Return the profile through other points.
+
+        `plane` (n, 2) are their coordinates m' (see `MeridionalMap`) and theta, `heights` (n,) their heights
+        h.
+        """
         made = copy(self)
         made.__dict__ = {k: v for k, v in vars(self).items() if k not in ("thickness", "_heights")}
         made.heights = heights

@@ -38,7 +38,7 @@ class Window:
         return rows, *(slice(low + less, high + 1 - less) for low, high in ends)
 
     def cut(self, nodes: Floats, periodic: bool = False) -> Floats:
-        """Return a copy of a window (index ranges) of `nodes`, (ni, nj, 2) or (ni, nj, nk, 3)."""
+        """Return a copy of the nodes in this window, from `nodes` (ni, nj, 2) or (ni, nj, nk, 3)."""
         return as_planar(nodes[self._index(self.rows(len(nodes), periodic), 0)])
 
     def put(self, nodes: Floats, periodic: bool, patch: Floats) -> None:

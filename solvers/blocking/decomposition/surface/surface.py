@@ -45,7 +45,11 @@ class Triangulation:
 
     @cached_property
     def fans(self) -> tuple[Indices, Indices]:
-        """Triangle corners at vertices: where each vertex starts (n + 1,) in a list, and the list (3 t,)."""
+        """The triangle corners at each vertex, as two arrays.
+
+        The second (3 t,) lists all triangle corners by vertex. The first (n + 1,) has the index in this list
+        at which the corners of each vertex start.
+        """
         start, corners, reached = surface_fans(self.arrays, self.size)
         if reached != len(corners):
             raise SolverError("triangles that meet in a point only")
