@@ -227,7 +227,7 @@ def quality_dict(quality: Quality) -> dict[str, Any]:
 
 
 def profile_dict(profile: ProfileReport) -> dict[str, Any]:
-    """Return the outcome of the checks of profiles as a dict that JSON can hold."""
+    """Return the results of a grid in profiles (sets of limits) as a dict that JSON can hold."""
     checks = [_check(result) for result in profile.results]
     return {"name": profile.name, "passed": profile.passed, "checks": checks}
 

@@ -184,7 +184,7 @@ def base_note(wall: Floats, corner: Floats, base: float, chord: float, *, fixed:
 
 
 def opened_note(height: float, thickness: float) -> str:
-    """Return the note on a trailing edge that was opened from `height` to `thickness`, in chords."""
+    """Return the note on a trailing edge that was thickened from `height` to `thickness`, in chords."""
     was = f"its trailing edge, {height:.2g} chords thick,"
     return Change(f"the outline is changed: {was} is opened to {thickness:g}")
 

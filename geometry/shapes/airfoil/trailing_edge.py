@@ -130,7 +130,7 @@ def wedged_base(section: CleanSection, tangents: tuple[Floats, Floats]) -> Clean
 
 
 def opened_base(airfoil: Airfoil, gap: float) -> CleanSection:
-    """Return the section, changed gradually from the nose on to a blunt trailing edge of height `gap`."""
+    """Return the section with a blunt trailing edge of height `gap`, with a change linear along the chord."""
     curve, section = airfoil.curve, airfoil._section
     points, knots, index, corners = curve.points, curve.knots, section.index, section.corners
     if airfoil.blunt:

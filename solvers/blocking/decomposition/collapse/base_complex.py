@@ -36,7 +36,7 @@ class BaseComplex:
 
     @property
     def layout(self) -> Layout:
-        """The blocks as a layout."""
+        """The blocks as a `Layout` object."""
         return Layout(self.mesh, self.blocks)
 
     @cached_property
