@@ -72,8 +72,7 @@ These properties are random:
 | tip gap | up to 3 % of the span in two of three rows; the others have no gap |
 
 Radial rows are centrifugal impellers, radial turbines, mixed-flow pumps and vaned diffusers. All grids are
-made with `--cells {cells}` and first-cell heights of {first:g} chords. Most grids need, and
-have, more cells.
+made with `--cells {cells}` and first-cell heights of {first:g} chords. Most grids need, and have, more cells.
 
 | rows | valid grids | nodes, median | scaled Jacobian: median / worst \
 | largest angle, degrees: median / worst | first-cell error \

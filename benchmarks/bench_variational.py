@@ -238,8 +238,8 @@ grids](../theory/variational.md).
   these values. The maximum cannot be below the largest corner angle of the boundary (arch 147.5 degrees,
   hexagon 135 degrees).
 - *deviation from 90 degrees at the sides*: mean over the grid lines that leave the four sides.
-- *distance to the solution on all nodes*: RMS distance from the grid without `--coarse` (for
-  `quad-general`: of `variational`), divided by the RMS distance of the nodes from their centroid.
+- *distance to the solution on all nodes*: RMS distance from the grid without `--coarse` (for the
+  network: from the variational grid), divided by the RMS distance of the nodes from their centroid.
 - *grids worse than Winslow's*: number of grids whose maximum or mean is larger than in Winslow's grid.
 - *CPU time*: best of several runs; for random domains, the median over the domains.
 
