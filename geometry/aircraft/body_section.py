@@ -105,8 +105,7 @@ class BodySection:
     def shape(self) -> Floats:
         """Distances (ANGLES,) of the curve from the section's middle, at equal angles from keel to crown.
 
-        Lengths along z are divided by half the width, along y by half the height: all distances of an ellipse
-        are 1.
+        Lengths along z are divided by half the width, along y by half the height: an ellipse has distances 1.
         """
         even = np.linspace(0.0, math.pi, ANGLES)
         if self.points is not None:

@@ -57,8 +57,7 @@ def coarse_grids(sides: Sides, network: Network, head: int) -> Floats:
     """Return the nodes (batch, 2, m, n) of the network's grids inside `sides`.
 
     `head` is the number, in `encoding.HEADS`, of the grid generator that the network imitates. Variational
-    grids have 33 x 33 nodes. Winslow grids have as many nodes as the sides, but at least 33 and at most 65
-    per direction.
+    grids have 33 x 33 nodes. Winslow grids have the nodes of the sides, but 33 to 65 per direction.
     """
     base = transfinite(thinned(sides, LATENT, LATENT))
     shares = None if head == WINSLOW else _shares
@@ -80,8 +79,7 @@ def answered(z: Any, unit: Any, network: Moves, shares: Moves | None, xp: Any, a
 
     With `around`, `z` are O grids unrolled to strips (batch, m + 1, n). `unit` has the grids scaled to unit
     size, and factors (batch, 1, 1) that scale them back. `network` returns displacements of nodes. `shares`
-    returns factors (batch, 1, 1) on these displacements; None means 1. `xp` is the module of the arrays,
-    numpy or torch.
+    returns factors (batch, 1, 1) on these displacements; None means 1. `xp` is numpy or torch.
     """
     sized, back = unit
     near, step = approach(sized, xp, around)

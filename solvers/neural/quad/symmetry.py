@@ -80,8 +80,8 @@ def table(size: int) -> Integers:
 def convolution(weight: Any, places: Any, xp: Any) -> Any:
     """Return the kernel (8 out, 8 in, size, size) of a convolution that commutes with turns and reflections.
 
-    `weight` (out, in, 8, size, size) are its parameters, `places` the result of `table`. `xp` is the module
-    of the arrays, numpy or torch.
+    `weight` (out, in, 8, size, size) are its parameters, `places` the result of `table`. `xp`: numpy or
+    torch.
     """
     out, into, _, size, _ = weight.shape
     spread = weight.reshape(out, into, -1)[:, :, places]
