@@ -222,7 +222,7 @@ Each domain is a GeoJSON file for the command `meshonet solve-pde FILE --cells 2
 - *files*: domain files from other sources than meshonet. *gallery*: the domains of the
   [gallery](../gallery/domains.md). *random*: random domains.
 - *valid grids*: all corner Jacobians are positive, and nodes of adjacent blocks match. Boundary nodes lie on
-  the outline within 1e-8 of the domain size. Areas of grid and domain differ by at most 0.1 %.
+  the outline within 1e-8 of the domain size. The area of the grid is exact within 0.1 %.
 - *irregular vertices*: interior nodes at which more or fewer than four cells meet.
 - *mean deviation*: deviation of a cell corner angle from 90 degrees, averaged over all corners of a grid.
 - *99th percentile*: 99 % of the cells of a grid have no corner angle with a larger deviation.

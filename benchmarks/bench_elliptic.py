@@ -52,7 +52,7 @@ OTHERS = """
 
 The table gives seconds for an elliptic grid, or for the most similar grid that the program makes. The times
 of the MeshONet paper (arXiv 2501.11937) and of Construct2D, a grid generator for airfoils, were measured on
-other machines. Empty cells: no time is known.
+other machines. Empty cells: time unknown.
 
 | program | 100x100 | 200x200 | 250x100 | 400x400 | 800x800 | 1600x1600 | 3200x3200 |
 | --- | --- | --- | --- | --- | --- | --- | --- |

@@ -229,7 +229,7 @@ grids](../theory/variational.md).
 
 - *arch*, *hexagon*, *wrench*: shapes of the MeshONet paper (arXiv 2501.11937). *bump*: a square with a half
   disc cut out of the south side.
-- *--coarse N*: the solver runs on N x N nodes, and the solution is interpolated to all nodes.
+- *--coarse N*: solution on N x N nodes, interpolated to all nodes.
 - *network `quad-general`*: a [network](quad-operator.md) that predicts the variational grid.
 - *infer*: `infer` without options; around airfoils, Winslow's equations after a conformal map.
 - *NACA 0012-sharp*: NACA 0012 with a closed trailing edge.

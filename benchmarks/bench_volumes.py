@@ -63,7 +63,7 @@ NETWORKS = """## A network: 3DMeshNet
 Use `variational`, not 3DMeshNet: the network takes far more CPU time and makes fewer valid grids.
 
 A 3DMeshNet (`train --model meshnet`) is trained anew for each domain, here for the first {count} domains of
-*Quality*, with {epochs} steps (default 15,000). The training is part of the CPU time.
+*Quality*, with {epochs} steps (default 15,000). The CPU time includes the training.
 
 - *3DMeshNet*: the given boundary nodes replace the predicted ones (`infer --answer pasted`). The largest
   error of a predicted boundary node is {off} % of the domain size (median).
