@@ -122,8 +122,9 @@ class Row:
     @cached_property
     def chord(self) -> float:
         """Distance from the leading to the trailing edge of the longest profile."""
-        lengths = []
+        squares = []
         for points in self.profiles:
-            p = np.asarray(points)
-            lengths.append(float(np.sqrt(((p[:, None] - p[None]) ** 2).sum(axis=-1).max())))
-        return max(lengths)
+            x, y, z = np.asarray(points).T
+            apart = [(each[:, None] - each) ** 2 for each in (x, y, z)]
+            squares.append(float((apart[0] + apart[1] + apart[2]).max()))
+        return math.sqrt(max(squares))

@@ -1,17 +1,17 @@
 """Blocks in a gap, inside the outline of the blade."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices, norms
+from meshonet.geometry.arrays import Floats, Indices, norms, wrapped
 from meshonet.geometry.elementary import product
 from meshonet.geometry.linear import least_squares
 from meshonet.geometry.rows.row import Row
 from meshonet.solvers.rows.gap_fill import GapFill, filled_outline
 from meshonet.solvers.rows.harmonic import HarmonicMoves
 from meshonet.solvers.rows.span_lines import key_heights
+from meshonet.solvers.rows.span_places import SpanPlaces
 from meshonet.solvers.rows.span_spacing import SAMPLES, line_parts
 from meshonet.solvers.rows.zones import Zone
 
@@ -37,16 +37,12 @@ class GapBlocks:
     space: Floats  # (levels, n, 3) x, y, z
 
 
-def gap_ends(
-    row: Row, beside: Callable[[float], Floats], lead: int, zone: Zone, first: float, growth: float
-) -> GapEnds:
+def gap_ends(row: Row, places: SpanPlaces, zone: Zone, first: float, growth: float) -> GapEnds:
     """Return the nodes inside the blade's outline at both ends of a gap (between blade and hub or casing).
 
     Parameters
     ----------
-    beside : function of the height. It returns coordinates s, theta, h (k, 2, 3), as defined by `Channel`, of
-        the blade's k nodes, clockwise, and of the next nodes outwards.
-    lead : index of the node at the leading edge.
+    places : places around the blade at which its nodes lie.
     zone : the gap.
     first, growth : height of the cells inside the outline, and largest ratio of neighbouring cells.
 
@@ -55,15 +51,14 @@ def gap_ends(
     tip = zone.high == 1.0  # the blade is below this gap, otherwise above it
     heights = (zone.low, zone.high) if tip else (zone.high, zone.low)
     maps = [row.channel.meridional(height) for height in heights]
+    lead = int(np.abs(wrapped(places.at(float(tip)))).argmin())
     outlines: list[Floats] = []
-    outside: list[Floats] = []
     for to, height in zip(maps, heights, strict=True):
-        nodes = beside(height)
+        nodes = row.surface.section(height, places.at(height))
+        outlines.append(np.stack([to.forward(nodes[:, 0]), nodes[:, 1]], axis=1))
         if height == zone.low:
-            radius = float(norms(row.channel.in_space(nodes[:, 0])[:, 1:]).mean())
-        for k, out in enumerate((outlines, outside)):
-            out.append(np.stack([to.forward(nodes[:, k, 0]), nodes[:, k, 1]], axis=1))
-    fill = filled_outline(outlines[0], outside[0], lead, first / radius, growth)
+            radius = float(row.channel.at(nodes[:, 0], np.full(len(nodes), height))[:, 1].mean())
+    fill = filled_outline(outlines[0], lead, first / radius, growth)
     planes = [fill.layout.mesh.nodes, _carried(fill, outlines[1])]
     ends = [
         np.stack([to.back(nodes[:, 0]), nodes[:, 1]], axis=1) for to, nodes in zip(maps, planes, strict=True)
@@ -80,8 +75,7 @@ def gap_blocks(
     s, theta, h of these nodes (along, around and across the channel) on each level along the span.
     """
     fill = ends.fill
-    blade = row.channel.in_space(outline[:, fill.outline])
-    between = _between(row, ends.low, ends.high, zone, blade, fill, growth)
+    between = _between(row, ends.low, ends.high, zone, outline[:, fill.outline], fill, growth)
     return GapBlocks(fill, around[fill.outline], between)
 
 
@@ -100,28 +94,24 @@ def _carried(fill: GapFill, outline: Floats) -> Floats:
 def _between(
     row: Row, low: Floats, high: Floats, zone: Zone, outline: Floats, fill: GapFill, growth: float
 ) -> Floats:
-    """Return nodes (levels, n, 3) in space between both ends, `outline` (levels, k, 3) as given."""
+    """Return nodes (levels, n, 3) in space between both ends; `outline` (levels, k, 3) is in s, theta, h."""
     channel, k = row.channel, outline.shape[1]
 
     def at(part: Floats) -> Floats:
         s_theta = low + part[..., None] * (high - low)
         heights = zone.low + part * (zone.high - zone.low)
         heights[-1] = zone.high
-        return channel.in_space(np.concatenate([s_theta, heights[..., None]], axis=-1))
+        return np.concatenate([s_theta, heights[..., None]], axis=-1)
 
-    samples = at(np.repeat(key_heights(SAMPLES)[:, None], len(low), axis=1))
-    space = at(line_parts(samples, zone.ends, growth, zone.cells))
-    move = outline - space[:, :k]
+    samples = channel.in_space(at(np.repeat(key_heights(SAMPLES)[:, None], len(low), axis=1)))
+    nodes = at(line_parts(samples, zone.ends, growth, zone.cells))
+    move = outline - nodes[:, :k]
     for block in fill.layout.blocks[:4]:
         rows = block.shape[1] - 1
         for j in range(1, rows):
-            space[:, block[1:-1, j]] += (1.0 - j / rows) ** 2 * move[:, block[1:-1, 0]]
-    for block in fill.layout.blocks[:4]:  # lines between two blocks, once
-        rows = block.shape[1] - 1
-        space[:, block[0, 1:rows]] += ((1.0 - np.arange(1, rows) / rows) ** 2)[:, None] * move[
-            :, block[0, :1]
-        ]
-    space[:, :k] = outline
+            nodes[:, block[:-1, j]] += (1.0 - j / rows) ** 2 * move[:, block[:-1, 0]]
+    nodes[:, :k] = outline
+    space = channel.in_space(nodes)
     for end, own, size in ((0, 1, zone.ends[0]), (-1, -2, zone.ends[1])):
         for _ in range(_ROUNDS):
             step = space[own, k:] - space[end, k:]

@@ -75,16 +75,11 @@ def _counts(outline: Floats, lead: int, first: float, growth: float) -> tuple[in
     return aside, max(_FEWEST_ROWS, cells - aside)
 
 
-def filled_outline(outline: Floats, outside: Floats, lead: int, first: float, growth: float) -> GapFill:
+def filled_outline(outline: Floats, lead: int, first: float, growth: float) -> GapFill:
     """Return the five blocks inside a clockwise outline (k, 2), with outer cells about `first` high.
 
-    Parameters
-    ----------
-    outside : (k, 2) nodes next to the outline, outside.
-    lead : index of the node at the leading edge.
-    growth : largest ratio of neighbouring cells.
-
-    Raises NoValidGridError if cells are folded.
+    `lead` is the index of the node at the leading edge. Neighbouring cells grow by `growth` at most, also
+    from cells of height `first` outside. Raises NoValidGridError if cells are folded.
     """
     aside, rows = _counts(outline, lead, first, growth)
     sides = outline_sides(len(outline), lead, aside)
@@ -100,7 +95,7 @@ def filled_outline(outline: Floats, outside: Floats, lead: int, first: float, gr
     closed = np.append(around, 0)
     beyond = np.stack([count + closed, closed], axis=1)  # with them growth is limited across the outline
     mesh = QuadMesh(
-        Domain((loop,), "gap"), np.concatenate([start, outside[order]]),
+        Domain((loop,), "gap"), np.concatenate([start, _outside(outline, first)[order]]),
         lattice_quads([block[::-1] for block in (*blocks, beyond)]), places,
     )  # fmt: skip
     nodes = _optimum(mesh, held, growth).nodes
@@ -109,6 +104,15 @@ def filled_outline(outline: Floats, outside: Floats, lead: int, first: float, gr
         places.take(np.arange(count)),
     )  # fmt: skip
     return GapFill(order, Layout(inside, tuple(blocks)))
+
+
+def _outside(outline: Floats, distance: float) -> Floats:
+    """Return points (k, 2) at a distance from the nodes of a clockwise outline (k, 2)."""
+    step = np.roll(outline, -1, axis=0) - outline
+    way = step / norms(step)[:, None]
+    way = way + np.roll(way, 1, axis=0)
+    normals = np.stack([-way[:, 1], way[:, 0]], axis=1)
+    return np.asarray(outline + distance * normals / norms(normals)[:, None])
 
 
 def _optimum(mesh: QuadMesh, held: Bools, growth: float) -> QuadMesh:

@@ -88,7 +88,6 @@ class KeySection:
 class Beginning:
     """The middle section of a blade row, and the data from which the grids of all other sections are made."""
 
-    plan: SectionPlan  # data that all sections share
     columns: Sequence[LayerColumns | None]  # columns of the layers of each section; None for the middle one
     middle: KeySection  # the middle section
     following: "tuple[NextSections, NextSections]"  # makers of the sections towards hub and casing
@@ -97,8 +96,10 @@ class Beginning:
 def planned(
     planes: Sequence[SectionPlane], coarse: Layout | None, cells: int, longest: Mapping[int, float],
     wake: tuple[float, float], gaps: tuple[bool, bool],
-) -> Beginning:  # fmt: skip
-    """Return the data that all sections share, and the middle section with about `cells` cells.
+) -> tuple[KeySection, tuple[SectionPlan, SectionPlan]]:  # fmt: skip
+    """Return a first middle section with about `cells` cells, and two plans of all sections.
+
+    The first plan is better, but layers may be folded where nodes have to move far.
 
     Parameters
     ----------
@@ -108,7 +109,8 @@ def planned(
     gaps : whether the blade ends in a gap at the hub, and at the casing.
     """
     plane = planes[len(planes) // 2]
-    whole = middle_section(planes, cells, longest, coarse)
+    across = [partial(getattr, each, "across") for each in planes]  # cached
+    whole, *_ = run_in_threads([partial(middle_section, planes, cells, longest, coarse), *across])
     columns, growth = layer_columns(whole), plane.cascade.layers.growth
     at = plane.places_of(whole.mesh.places.arc[columns[:, 0]])
     pairs = _pairs(whole, columns)
@@ -123,21 +125,20 @@ def planned(
         [partial(places.evened, planes, growth, pairs), partial(HarmonicMoves, whole.mesh, held)]
     )
     plan = SectionPlan(growth, columns, _beyond(whole, columns), ends, held, moves, places, wake)
-    section = KeySection(plane, whole, at)
-    try:
-        return _begun(replace(plan, places=even), planes, section)
-    except NoValidGridError:  # layers are folded where nodes had to move far
-        return _begun(plan, planes, section)
+    return KeySection(plane, whole, at), (replace(plan, places=even), plan)
 
 
-def _begun(plan: SectionPlan, planes: Sequence[SectionPlane], section: KeySection) -> Beginning:
-    """Return the beginning for a plan; it has the middle section's nodes at the plan's places."""
+def beginning(plan: SectionPlan, planes: Sequence[SectionPlane], section: KeySection) -> Beginning:
+    """Return the beginning for a plan, from the first middle section, whose nodes move to the plan's places.
+
+    Raises NoValidGridError if cells are folded.
+    """
     others = [plane for plane in planes if plane is not section.plane]
     columns = [partial(LayerColumns.of, plane, plan.places.at(plane.height)) for plane in others]
     following = [partial(NextSections, plan, section)] * 2
     placed, below, above, *made = run_in_threads([partial(_placed, plan, section), *following, *columns])
     half = len(made) // 2
-    return Beginning(plan, (*made[:half], None, *made[half:]), placed, (below, above))
+    return Beginning((*made[:half], None, *made[half:]), placed, (below, above))
 
 
 class NextSections:

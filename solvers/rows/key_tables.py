@@ -18,10 +18,19 @@ from meshonet.geometry.threads import run_in_threads
 from meshonet.solvers.cascade.cascade import SHORTEST
 from meshonet.solvers.cascade.passage import INLET, NEAR, OUTLET
 from meshonet.solvers.rows.behind import even_behind
-from meshonet.solvers.rows.key_sections import KeySection, LayerColumns, NextSections, SectionPlan, planned
+from meshonet.solvers.rows.gap_blocks import GapEnds, gap_ends
+from meshonet.solvers.rows.key_sections import (
+    KeySection,
+    LayerColumns,
+    NextSections,
+    SectionPlan,
+    beginning,
+    planned,
+)
 from meshonet.solvers.rows.middle_section import coarse_section
 from meshonet.solvers.rows.section_plane import SectionPlane
 from meshonet.solvers.rows.span_lines import key_heights
+from meshonet.solvers.rows.zones import Zone
 
 KEYS = 9  # number of sections that are computed as plane cascades
 _PART = 0.6  # of the least room before or behind the blade that is left to blocks
@@ -38,18 +47,39 @@ class KeyTables:
 
     plan: SectionPlan
     sections: tuple[KeySection, ...]
+    gaps: tuple[GapEnds, ...]  # nodes inside the blade's outline at the ends of each gap, the hub's first
 
 
-def key_tables(row: Row, first: float, growth: float, cells: int) -> KeyTables:
+def key_tables(row: Row, first: float, growth: float, cells: int, zones: Sequence[Zone] = ()) -> KeyTables:
     """Return sections of a row, with about `cells` cells each, between which nodes are interpolated later.
 
-    `first` is the first-cell height, `growth` the growth ratio of the layers. Raises InputError if there is
-    no room for layers, inlet or outlet. Raises NoValidGridError if cells are folded.
+    `first` is the first-cell height, `growth` the growth ratio of the layers. Gaps among `zones` are filled.
+    Raises InputError if there is no room for layers, inlet or outlet. Raises NoValidGridError if cells are
+    folded.
     """
     planes, coarse = _planes(row, first, growth)
     gaps = row.hub_gap > 0.0, row.tip_gap > 0.0
-    begun = planned(planes, coarse, cells, _longest(planes), _wake(row, planes), gaps)
+    section, plans = planned(planes, coarse, cells, _longest(planes), _wake(row, planes), gaps)
+
+    def tables(plan: SectionPlan) -> KeyTables:
+        jobs = [partial(_sections, row, plan, planes, section, first, growth)]
+        inside = [partial(gap_ends, row, plan.places, zone, first, growth) for zone in zones if zone.gap]
+        sections, *made = run_in_threads([*jobs, *inside])
+        return KeyTables(plan, sections, tuple(made))
+
+    try:
+        return tables(plans[0])
+    except NoValidGridError:
+        return tables(plans[1])
+
+
+def _sections(
+    row: Row, plan: SectionPlan, planes: Sequence[SectionPlane], section: KeySection, first: float,
+    growth: float,
+) -> tuple[KeySection, ...]:  # fmt: skip
+    """Return all sections for a plan, from the first middle one."""
     half = KEYS // 2
+    begun = beginning(plan, planes, section)
 
     def chain(following: NextSections, others: Sequence[int]) -> list[KeySection]:
         sections = [begun.middle]
@@ -63,8 +93,7 @@ def key_tables(row: Row, first: float, growth: float, cells: int) -> KeyTables:
 
     ways = range(half - 1, -1, -1), range(half + 1, KEYS)
     below, above = run_in_threads(list(map(partial, (chain, chain), begun.following, ways)))
-    sections = even_behind((*below[::-1], begun.middle, *above), begun.plan.columns)
-    return KeyTables(begun.plan, sections)
+    return even_behind((*below[::-1], begun.middle, *above), plan.columns)
 
 
 def _planes(row: Row, first: float, growth: float) -> tuple[list[SectionPlane], Layout | None]:
@@ -76,7 +105,7 @@ def _planes(row: Row, first: float, growth: float) -> tuple[list[SectionPlane], 
     def plane_at(height: float, share: float = 1.0) -> SectionPlane:
         plane = SectionPlane.of(row, height, first, growth, share)
         with _of_section(height):
-            _ = plane.cascade.reach, plane.across  # marches the layers
+            _ = plane.cascade.reach  # marches the layers
         return plane
 
     def begun(height: float) -> tuple[SectionPlane, Layout | None]:

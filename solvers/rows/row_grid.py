@@ -27,7 +27,7 @@ from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.threads import in_threads, run_in_threads
 from meshonet.kernels._native import stacked_block
-from meshonet.solvers.rows.gap_blocks import GapBlocks, GapEnds, gap_blocks, gap_ends
+from meshonet.solvers.rows.gap_blocks import GapBlocks, gap_blocks
 from meshonet.solvers.rows.key_tables import key_tables
 from meshonet.solvers.rows.request import RowRequest
 from meshonet.solvers.rows.stacked import StackedRow
@@ -43,22 +43,17 @@ def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
     """
     first, growth = request.height() * row.chord, request.ratio
     zones = zones_of(row, first, growth, request.cells)
-    keys = key_tables(row, first, growth, section_cells(zones, request.cells, growth))
+    keys = key_tables(row, first, growth, section_cells(zones, request.cells, growth), zones)
     stacked = StackedRow(row, keys, zones, first, growth)
-    open_ = [k for k, zone in enumerate(zones) if zone.gap]
-
-    def ends_of(k: int) -> GapEnds:
-        return gap_ends(row, stacked.beside, int(stacked.leading[min(k, 1)]), zones[k], first, growth)
-
-    *ends, (made, rest) = run_in_threads([*(partial(ends_of, k) for k in open_), stacked.nodes])
+    ends = dict(zip([k for k, zone in enumerate(zones) if zone.gap], keys.gaps, strict=True))
+    made, rest = stacked.nodes()
 
     def section(k: int) -> "ZoneSection":
         if not zones[k].gap:
             return ZoneSection(to_grid(stacked.layout), stacked.layout, None)
         low, high = stacked.bounds[k]
-        outline = made.beside[low : high + 1, :, 0]
-        own = ends[open_.index(k)]
-        inside = gap_blocks(row, own, stacked.columns[:, 0], outline, zones[k], growth)
+        outline = made.blade[low : high + 1]
+        inside = gap_blocks(row, ends[k], stacked.columns[:, 0], outline, zones[k], growth)
         layout = _with_inside(stacked.layout, inside)
         return ZoneSection(to_grid(layout), layout, inside)
 

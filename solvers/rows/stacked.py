@@ -20,15 +20,15 @@ from meshonet.solvers.rows.span_spacing import LineArcs, Spacing
 from meshonet.solvers.rows.zones import Zone
 
 DEGREE = 5  # degree of the polynomials along the span; optima of neighbouring sections contain noise
-_AT_ONCE = 1 << 16  # number of nodes that are computed together, so that they fit into the cache
+_AT_ONCE = 1 << 18  # number of nodes that are computed together, so that they fit into the cache
 
 
 @dataclass(frozen=True, eq=False)
 class RowNodes:
-    """Nodes of a blade row: x, y, z of all, and s, theta, h (see `Channel`) on and next to the blade."""
+    """Nodes of a blade row: x, y, z of all, and s, theta, h (see `Channel`) of those on the blade."""
 
     space: Floats  # (levels, n, 3) x, y, z
-    beside: Floats  # (levels, k, 2, 3) s, theta, h of the blade's nodes, clockwise, and of those next to them
+    blade: Floats  # (levels, k, 3) s, theta, h of the blade's nodes, clockwise
 
 
 class StackedRow:
@@ -43,7 +43,6 @@ class StackedRow:
     Attributes
     ----------
     columns : (k, rows + 1) nodes of the layers, clockwise, each column from the blade outwards.
-    leading : (2,) columns nearest to the leading edge, at the hub and at the casing.
     """
 
     def __init__(self, row: Row, keys: KeyTables, zones: Sequence[Zone], first: float, growth: float) -> None:
@@ -52,7 +51,6 @@ class StackedRow:
         u = np.array([section.places for section in keys.sections])
         steps = wrapped(np.diff(u, axis=0))
         around = u[0] + np.cumsum(np.concatenate([np.zeros((1, u.shape[1])), steps]), axis=0)
-        self.leading = np.abs(wrapped(around[[0, -1]])).argmin(axis=1)
         self.around = SpanLines.through(around, DEGREE)
         self.lines = SpanLines.through(np.stack(in_threads(self._key, keys.sections)), DEGREE)
 
@@ -90,12 +88,6 @@ class StackedRow:
         second = np.flatnonzero(partner >= 0)
         return second, partner[second]
 
-    def beside(self, height: float) -> Floats:
-        """Return s, theta, h (k, 2, 3) of k blade nodes at a `height`, and of the node next to each."""
-        group = self._group(self.columns.ravel(), self.around)
-        values = group.at(np.full((1, self.columns.size), height))
-        return values.reshape(*self.columns.shape, 3)[:, :2]
-
     def nodes(self) -> tuple[RowNodes, list[Callable[[], None]]]:
         """Return the nodes, and functions still to be called, which compute x, y, z of the nodes in layers.
 
@@ -105,7 +97,7 @@ class StackedRow:
         arcs = in_threads(NodeGroup.arcs, groups)
         spacings = in_threads(self._spacing, list(zip(self.zones, zip(*arcs, strict=True), strict=True)))
         count, levels = len(self.layout.mesh.nodes), self.levels[-1] + 1
-        made = RowNodes(np.empty((levels, count, 3)), np.empty((levels, len(self.columns), 2, 3)))
+        made = RowNodes(np.empty((levels, count, 3)), np.empty((levels, len(self.columns), 3)))
         jobs: list[Callable[[], Floats | None]] = [
             partial(self._layers if group.columns else self._fill, made, group, own, spacings)
             for group, own in zip(groups, arcs, strict=True)
@@ -139,9 +131,9 @@ class StackedRow:
     def _layers(
         self, made: RowNodes, group: NodeGroup, arcs: Sequence[LineArcs], spacings: Sequence[Spacing]
     ) -> Floats:
-        """Return s, theta, h of a group of layers, and store those beside the blade."""
+        """Return s, theta, h of a group of layers, and store those of the blade."""
         values = group.values(arcs, spacings)
-        made.beside[:, self._part(group)] = values.reshape(len(values), group.columns, -1, 3)[:, :, :2]
+        made.blade[:, self._part(group)] = values.reshape(len(values), group.columns, -1, 3)[:, :, 0]
         return values
 
     def _part(self, group: NodeGroup) -> slice:
