@@ -21,7 +21,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats, Indices
 from meshonet.geometry.cached import cached_property
-from meshonet.geometry.elementary import arccos, arctan2, cosh, log, modulus, sinh, times
+from meshonet.geometry.elementary import arccos, arctan2, log, modulus, product, sinh, tanh, times
 from meshonet.geometry.linear import solve
 from meshonet.geometry.threads import in_threads, run_in_threads, thread_count
 
@@ -91,14 +91,13 @@ class PassageFlow:
         sum for the constant 1 (Helsing, Ojala, J. Comput. Phys. 227 (2008) 2899-2921).
         """
         finite = np.isfinite(self.strip)
-        strip, away = self.strip[finite], self.away[finite]
-        before, after = np.roll(strip, 1), np.roll(strip, -1)
-        weight = sinh(0.5 * (after - before)) / cosh(0.5 * after) / cosh(0.5 * before)
-        weight = times(weight, cosh(0.5 * strip))
+        around = tanh(0.5 * self.strip[finite])
+        weight = np.roll(around, -1) - np.roll(around, 1)
+        terms = np.stack([self.away[finite], np.ones(len(around))], axis=1)
 
         def integrals(some: Complexes) -> Complexes:
-            kernel = weight / sinh(0.5 * (strip - some[:, None]))
-            return np.asarray(times(kernel, away).sum(axis=1) / kernel.sum(axis=1))
+            sums = product(weight / (around - tanh(0.5 * some)[:, None]), terms)
+            return np.asarray(sums[:, 0] / sums[:, 1])
 
         return np.concatenate(in_threads(integrals, np.array_split(places, thread_count())))
 
