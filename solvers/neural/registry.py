@@ -51,9 +51,9 @@ def model_path(name: str) -> Path:
 
 
 def load(name: str | Path) -> Operator:
-    """Return the operator of a shipped model by name, or of a model file by path; ``base`` has no network.
+    """Return the operator of a shipped model by name, or of a model file by path.
 
-    Raises InputError if there is no such model, if the file is no model file, or if its arrays do not match.
+    ``base`` is the airfoil solver without a network. Raises InputError for unknown names and wrong files.
 
     >>> operator = load("quad-general")
     >>> operator.name, operator.topology

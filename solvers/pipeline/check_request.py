@@ -16,7 +16,7 @@ LIMITS = {"tol": (0.0, 1.0, "1e-8")}
 
 
 def check_request(request: GridRequest) -> None:
-    """Raise InputError if a value is out of range, or if options contradict or miss each other."""
+    """Raise InputError if a value is out of range, or if options exclude each other or need another one."""
     if request.method not in ("best", "auto") and request.method.partition(":")[0] not in METHODS:
         from meshonet.solvers.pipeline.named import method_named
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def heights_of(request: OneBlock, boundary: Boundary) -> Heights:
     """Return the first-cell heights that a request prescribes, in the unit of `boundary`.
 
-    Raises InputError if no side may be a wall.
+    Raises InputError if no walls are named, and all sides have names, such as inlet, that exclude a wall.
     """
     off: dict[str, Any] = {}
     if request.at_walls and boundary.around_body:

@@ -30,7 +30,7 @@ GROWTH = 1.2  # of layers where none is given, as of volumes that are marched
 
 
 def blade_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, ...]]:
-    """Return the volume around a blade from its first section, ``hub``, to its last, ``shroud``, and notes.
+    """Return the volume around a blade, with patches ``hub`` and ``shroud`` at its end sections, and notes.
 
     Planar O grids around the sections are marched and joined. Far from the blade, all these grids are equal,
     so that the far field is a cylinder. Raises InputError if node counts are too small. Raises

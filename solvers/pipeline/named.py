@@ -25,7 +25,7 @@ def solved(method: Method, boundary: Boundary, start: Grid | None) -> Solution:
 
 @dataclass(frozen=True)
 class Each(OneByOne):
-    """A method that calls a function for each boundary. Raises InputError: unknown settings."""
+    """A grid generation method that calls `target` for each boundary. Raises InputError: unknown settings."""
 
     name: str  # in `METHODS`
     # a function of a boundary, its settings and perhaps ``initial``, a grid to start from; or ``module:name``
@@ -47,7 +47,7 @@ class Each(OneByOne):
         return setting in inspect.signature(self.function).parameters
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the solution of a boundary; `start` is used if the function has a parameter ``initial``."""
+        """Return the solution of a boundary; functions with a parameter ``initial`` start from `start`."""
         more = {"initial": start} if start is not None and self.takes("initial") else {}
         return self.function(boundary, **self.settings, **more)
 

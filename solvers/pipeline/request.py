@@ -150,7 +150,7 @@ class Volume(Request):
 
     @property
     def of_surface(self) -> bool:
-        """Whether the options require marching from a surface, even if the surface is flat."""
+        """Whether options require marching from a surface; flat patches of files are then surfaces."""
         return self.method == "hyperbolic" and not (OF_SURFACE | {"far_field"}).isdisjoint(self.chosen)
 
 
@@ -220,8 +220,8 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
         Edge length of cells, instead of `cells`.
     walls : tuple of str, optional
         Names of the walls with layers. If none are given, south, north and sides called wall have layers in
-        a four-sided domain. In a multi-block domain, all holes have layers. If it has no holes, but sides
-        with names such as ``inlet``, all its other sides have layers.
+        a four-sided domain. In a multi-block domain, all holes have layers. If there are no holes, but some
+        sides cannot be walls because of names such as ``inlet``, all other sides have layers.
     pitch : tuple of 2 float, optional
         Displacement vector from one blade of a cascade to the next.
     inlet, outlet : float, optional

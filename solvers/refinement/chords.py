@@ -61,7 +61,7 @@ class Chords:
         return cls(layout, tuple(edges), sides, turned, wall, partner, chord, count, images)
 
     def of_refined(self, layout: Layout) -> "Chords":
-        """Return the chords (sets of opposite edges) of `layout`: the same blocks with other cell counts."""
+        """Return the chords of a `layout` with the same blocks as this object's, but other cell counts."""
         return replace(Chords.of(layout), chord=self.chord, count=self.count)
 
     @cached_property
@@ -73,7 +73,7 @@ class Chords:
 
     @cached_property
     def multiple(self) -> Indices:
-        """Number (chords,) by which each chord's cell count must be divisible, to keep a layout symmetric."""
+        """Divisors (chords,) that cell counts of sets of opposite edges must have in a symmetric layout."""
         multiple = np.ones(self.count, dtype=np.intp)
         for k, edge in enumerate(self.edges):
             own = sum(np.array_equal(distinct(to[edge]), distinct(edge)) for to in self.images)
@@ -113,7 +113,7 @@ class Chords:
 
     @cached_property
     def least(self) -> Indices:
-        """Smallest number of cells (chords,) of each set of opposite edges; larger at walls that bend."""
+        """Smallest permitted cell count (chords,) of each set of opposite edges; larger on curved walls."""
         least = np.full(self.count, LEAST, dtype=np.intp)
         for edge, loop, arcs in self._walls():
             ends = np.sort(arcs[[0, -1]])
@@ -129,7 +129,7 @@ class Chords:
         return int((along[:, 0] * along[:, 2]).sum())
 
     def along_loops(self, counts: Indices) -> Indices:
-        """Return the wall cells (loops,) of each boundary loop, if chords (rows of blocks) have `counts`."""
+        """Return the numbers (loops,) of wall cells on boundary loops, from `counts` (chords,) of chords."""
         mesh = self.layout.mesh
         along = np.zeros(len(mesh.domain.loops), dtype=np.intp)
         for edge in np.flatnonzero(self.wall):
@@ -148,16 +148,16 @@ class Chords:
         return lost
 
     def bend(self, edge: int) -> float:
-        """Return the greatest angle in radians by which the wall turns along a cell of a wall edge."""
+        """Return the greatest angle in radians by which the wall turns in one cell of a block edge on it."""
         arcs = np.sort(self.arcs(edge))
         loop = self.layout.mesh.domain.loops[self.layout.mesh.places.loop[self.edges[edge][0]]]
         return float(np.radians(turning_between(loop, arcs[:-1], arcs[1:]).max()))
 
     def counts_for_size(self, size: float, least: Indices | None = None) -> Indices:
-        """Return numbers of cells (chords,) along sets of opposite edges (chords) for cells of a given size.
+        """Return numbers of cells (chords,), one for each set of opposite edges, for cells of a given size.
 
-        The number of a chord is the rounded geometric mean of length / size over its edges. `least` (chords,)
-        are the smallest permitted numbers, by default those of the chords.
+        The number is the rounded geometric mean of length / size over the edges of a set. `least` (chords,)
+        are the smallest permitted numbers, by default the attribute `least`.
         """
         wanted = log(np.maximum(self.lengths / size, 1e-9))
         mean = np.bincount(self.chord, wanted, self.count) / np.bincount(self.chord, minlength=self.count)

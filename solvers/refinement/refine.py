@@ -28,7 +28,7 @@ _FINER = 8  # points a cell, between which nodes at given places lie on straight
 def refine(
     layout: Layout, counts: Indices, chords: Chords | None = None, places: Sequence[Floats] | None = None
 ) -> Layout:
-    """Return the layout with `counts` (chords,) cells along the edges of each chord (row of blocks).
+    """Return the layout with `counts` (chords,) cells along the edges of each chord, a set of opposite edges.
 
     `places` has, for each edge, the positions (cells + 1,) of the new nodes as fractional indices of old
     nodes; None: equal steps. If a corner of the domain is inside an edge, the nearest new node moves there.

@@ -25,7 +25,7 @@ class Near:
     square: Floats  # (p, m) squared cosine of the angle between the edge and the normal at this point
 
     def length(self, sizes: "SizeMetric") -> Floats:
-        """Return the target lengths (m,) of the edges: the smallest lengths that parts of `sizes` require."""
+        """Return target lengths (m,) of edges in the metric `sizes`: the smallest at their nearest points."""
         rise = sizes.grading * self.distance
         high = np.minimum(sizes.across[self.point] + rise, sizes.largest)
         wide = np.minimum(sizes.along[self.point] + rise, sizes.largest)
@@ -65,9 +65,9 @@ class SizeMetric:
         return self.near(places, directions).length(self)
 
     def near(self, places: Floats, directions: Floats) -> Near:
-        """Return the nearest points on walls and fronts, with distances and angles, as `length` needs them.
+        """Return the points of the metric nearest to edges, with distances, and angles to the normals there.
 
-        `places` (m, 2) are the midpoints of edges, `directions` (m, 2) their directions.
+        `places` (m, 2) are the midpoints of the edges, `directions` (m, 2) their directions.
         """
         places = np.ascontiguousarray(places)
         size = np.maximum(np.hypot(directions[:, 0], directions[:, 1]), 1e-300)

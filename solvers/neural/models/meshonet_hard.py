@@ -20,10 +20,10 @@ class MeshONetHard(Architecture):
 
         (x, y) = H + s * B(xi, eta) * branch(x_1, y_1 .. x_m, y_m) . trunk(lift(xi, eta))
 
-    H is the harmonic extension of the boundary. B is zero on the boundary. s is the root mean square
-    difference of the training grids from H. For O grids the lift is periodic in xi. With `modes`, the proper
-    orthogonal decomposition of these differences replaces the product of B and trunk; this reduces errors at
-    sharp kinks.
+    H is the harmonic extension of the boundary, whose points are (x_1, y_1) .. (x_m, y_m). B is zero on the
+    boundary. s is the root mean square difference of the training grids from H. lift(xi, eta) are xi, eta,
+    and sines and cosines of both; for O grids only functions that are periodic in xi. With `modes`, B * trunk
+    is the proper orthogonal decomposition of the differences, which reduces errors at sharp kinks.
     """
 
     base: ClassVar[Literal["none", "harmonic"]] = "harmonic"
@@ -50,7 +50,6 @@ class MeshONetHard(Architecture):
         return {**branch, **dense_shapes("trunk", (seen, *[self.width] * self.depth, self.features))}
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
-        """Return statistics of sensors and `targets`, and modes (nodes, modes) of `targets`, by name."""
         seen = np.array([sensors(boundary, self.sensors) for boundary in samples.boundaries()])
         spread = seen.std(axis=0)
         size = np.sqrt((targets**2).mean())
@@ -64,7 +63,6 @@ class MeshONetHard(Architecture):
         return {**fixed, "fixed/modes": _modes(targets, self.modes)} if self.modes else fixed
 
     def seen(self, xp: Any, points: Any) -> Any:
-        """Return the lift and the factor B of the class at `points` (p, 2); with `modes`, only `points`."""
         if self.modes:
             return points
         xi, eta = points[:, :1], points[:, 1:]

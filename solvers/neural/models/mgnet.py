@@ -22,11 +22,12 @@ class MGNet(Architecture):
 
     ::
 
-        (x, y) = N_g(phi(xi, eta))    phi = (2 xi - 1, 2 eta - 1), or for O grids
-                                      (sin 2 pi xi, cos 2 pi xi, 2 eta - 1)
-        loss   = mean |alpha X_xx - 2 beta X_xe + gamma X_ee|^2 + rim * mean |X - U|^2
+        X    = (x, y) = N_g(phi(xi, eta))    phi = (2 xi - 1, 2 eta - 1), or for O grids
+                                             (sin 2 pi xi, cos 2 pi xi, 2 eta - 1)
+        loss = mean |alpha X_11 - 2 beta X_12 + gamma X_22|^2 + rim * mean |X - U|^2
 
-    U are the given boundary nodes. Lengths are relative to the size of each geometry.
+    Subscripts 1 and 2 are derivatives by xi and eta. U are the given boundary nodes, with the weight `rim`.
+    Lengths are relative to the size of each geometry.
     """
 
     physics: ClassVar[bool] = True

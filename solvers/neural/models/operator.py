@@ -28,7 +28,7 @@ CLOSE = 1e-6  # largest error of that interpolation, relative to the answer, at 
 
 @dataclass(frozen=True)
 class PaperOperator(Operator):
-    """A trained model of the table `ARCHITECTURES`."""
+    """A trained model with one of the architectures in `ARCHITECTURES`."""
 
     batched: ClassVar[bool] = False
 

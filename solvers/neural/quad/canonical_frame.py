@@ -24,7 +24,7 @@ IDENTITY: Element = (False, False, False)  # of a boundary that stays as it is
 
 @dataclass(frozen=True)
 class Canonical:
-    """A boundary, and its image in a frame that does not depend on its position, size and side names."""
+    """A boundary, and its image with standard position, direction, size and order of sides."""
 
     original: Boundary
     boundary: Boundary  # the same in the frame, its edges rounded and relabelled

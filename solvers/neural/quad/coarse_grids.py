@@ -54,10 +54,10 @@ def transfinite(sides: Sides) -> Floats:
 
 
 def coarse_grids(sides: Sides, network: Network, head: int) -> Floats:
-    """Return the nodes (batch, 2, m, n) of the network's grids inside `sides`.
+    """Return the network's grids (batch, 2, m, n), x and y of m by n nodes, inside four arrays of `sides`.
 
-    `head` is the number, in `encoding.HEADS`, of the grid generator that the network imitates. Variational
-    grids have 33 x 33 nodes. Winslow grids have the nodes of the sides, but 33 to 65 per direction.
+    `head` is the index in `encoding.HEADS` of the kind of grid, Winslow or variational. Variational grids
+    have 33 x 33 nodes. Winslow grids have as many as the sides, but from 33 to 65 per direction.
     """
     base = transfinite(thinned(sides, LATENT, LATENT))
     shares = None if head == WINSLOW else _shares
@@ -98,7 +98,7 @@ def nearer(z: Any, unit: Any, xp: Any, around: bool = False) -> Any:
 
 
 def in_frame(z: Any, xp: Any) -> tuple[Any, Any]:
-    """Return complex grids `z`, turned and scaled to area 1, and the inverse factors (batch, 1, 1)."""
+    """Return grids `z` (x + iy) normalised by `frame`, and factors (batch, 1, 1) to turn and scale back."""
     middle, factor = (value[:, None, None] for value in frame(z, xp))
     return times(z - middle, factor), factor.conj() / (factor.real**2 + factor.imag**2)
 

@@ -27,10 +27,10 @@ STRETCH = 30.0  # factor of small Picard steps in the inverse hyperbolic sine
 
 
 def frame(z: Any, xp: Any) -> tuple[Any, Any]:
-    """Return for each complex grid of `z` (batch, n, n) its centre (batch,) and a complex factor (batch,).
+    """Return for each grid `z` (batch, n, n) of nodes x + iy its centre (batch,) and a factor (batch,).
 
-    The grid ``(z - centre) * factor`` has area 1. It is turned so that the sum of two vectors is along x: the
-    mean step from west to east; the mean step from south to north, turned by -90°.
+    The grid ``(z - centre) * factor`` has area 1. The complex factor also turns it, so that on average xi is
+    along x and eta along y.
     """
     south, north, west, east = z[:, :, 0], z[:, :, -1], z[:, 0], z[:, -1]
     outline = xp.concatenate(

@@ -37,10 +37,10 @@ def inside(wall: Complexes) -> complex:
 
 
 def slope(p: Any, wall: Any, xp: Any) -> tuple[Any, Any, Any]:
-    """Return the gradient g and second derivatives m and c at the point `p` of the potential in `inside`.
+    """Return the gradient g and second derivatives m and c of the wall's potential at the point `p`.
 
-    Points and gradients are complex numbers x + iy. If p moves by v, g changes by ``m v + c v̄``, where m is
-    real. `wall` (n,) are points of the curve; `xp` is their array module, numpy or torch.
+    The function `inside` defines the potential. Points and gradients are complex numbers x + iy. If p moves
+    by v, g changes by ``m v + c v̄``, where m is real. `wall` (n,) is an array of `xp`, numpy or torch.
     """
     x, lengths = _pieces(wall, xp)
     o = p - x

@@ -124,11 +124,13 @@ class Network:
     O grids, unrolled to strips that are periodic along xi. Levels have 33, 17, 9 and 5 nodes::
 
         h = lift(features)
-        h = blocks(h);  h = down(silu(h))          on each level but the coarsest, which has one set of blocks
-        h = blocks(skip + finer(up(h)))            on the way up; finer: linear interpolation
-        d = m · project(silu(h))                   two components for each head; m = 0 on the boundary
+        h = blocks(h);  h = down(silu(h))     on each level but the coarsest
+        h = blocks(h)                         on the coarsest level
+        h = blocks(skip + finer(up(h)))       on each finer level; finer interpolates linearly
+        d = m · project(silu(h))              displacements, x and y for each kind of grid in `HEADS`
 
-    A block is h + b(silu(a(silu(h)))). The layers a, b and down have 3 x 3 kernels.
+    A block is h + b(silu(a(silu(h)))), and skip is h before down. Layers a, b and down have 3 x 3 kernels.
+    The factor m is 0 on the boundary (see `rim_factor`).
     """
 
     def __init__(

@@ -23,10 +23,10 @@ COMPACT = 0.15  # least over largest distance of the wall from the middle, of bo
 
 
 def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) -> Floats:
-    """Return the nodes (batch, 2, 65, 33) of the network's grids for O `boundaries` with equal node counts.
+    """Return the network's grids (batch, 2, 65, 33), x and y of 65 by 33 nodes, for O `boundaries`.
 
-    `head` is the index in `encoding.HEADS` of the method that the output of the network imitates. Raises
-    InputError if wall or far field wind once around neither the body's centroid nor another inner point.
+    Boundaries have equal node counts. `head` is the index in `encoding.HEADS` of the kind of grid. Raises
+    InputError if no point is found around which wall and far field both wind exactly once.
     """
     walls, strips, centres, once = _strips(boundaries)
     if not once.all():

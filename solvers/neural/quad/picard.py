@@ -35,7 +35,7 @@ def approach(
         alpha = |z_eta|^2, beta = z_xi . z_eta, gamma = |z_xi|^2        of the previous iterate
 
     `z` (batch, n, n) are nodes x + i y of grids of unit size, arrays of `xp`, numpy or torch. With `around`,
-    `z` are O grids unrolled to strips (batch, m + 1, n), whose last column is the first plus one period. With
+    `z` (batch, m + 1, n) are O grids unrolled to strips; ``z[:, m]`` is ``z[:, 0]`` plus one period. With
     `harmonic`, steps start from the harmonic grid. Otherwise they start from `z` and are accelerated by
     Anderson's method with one previous iterate, J. ACM 12 (1965) 547-560.
     """
@@ -79,7 +79,7 @@ def _extrapolated(correction: Any, step: Any, move: Any, xp: Any) -> Any:
 
 
 def nodes_after(n: int) -> int:
-    """Return the number of nodes along a direction during Picard steps; the final grid has `n` nodes."""
+    """Return the nodes per direction for the Picard steps after the network; the sides have `n` nodes."""
     return min(max(n, LATENT), FINER)
 
 

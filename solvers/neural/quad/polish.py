@@ -23,9 +23,9 @@ STILL = 1e-4  # moves at which a descent stops sooner, as `meshonet.solvers.ener
 def polished(
     boundaries: Sequence[Boundary], network: Network, topology: Topology, head: int, steps: int
 ) -> tuple[Floats, list[int]]:
-    """Return the network's grids (batch, 2, ni, nj), improved in iterations, and the iterations of each.
+    """Return the network's grids (batch, 2, ni, nj) after up to `steps` iterations, and the steps of each.
 
-    `boundaries` have equal node counts. `head` is the index in `HEADS` of the imitated method.
+    `boundaries` have equal node counts. `head` is the index in `encoding.HEADS` of the kind of grid.
     """
     if topology == "quad":
         coarse = coarse_grids.coarse_grids(coarse_grids.sides_of(boundaries), network, head)

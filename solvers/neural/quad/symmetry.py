@@ -69,19 +69,18 @@ SEEN: Floats = np.stack([_seen(element) for element in ELEMENTS])  # (8, FEATURE
 
 
 def table(size: int) -> Integers:
-    """Return the indices (8, 8, size²) of the weights w that are entries of the convolution kernels.
+    """Return the flat index in w (8, size, size) of each entry of a convolution kernel K (8, 8, size²).
 
-    A kernel has K[h, g](p) = w[h⁻¹ g](h⁻¹ p) at position p, with symmetries h and g of the square.
+    The kernel is K[h, g](p) = w[h⁻¹ g](h⁻¹ p) at position p, with symmetries h and g of the square.
     """
     count = size * size
     return np.asarray(RELATIVE[:, :, None] * count + TAPS[size].reshape(ORDER, 1, count))
 
 
 def convolution(weight: Any, places: Any, xp: Any) -> Any:
-    """Return the kernel (8 out, 8 in, size, size) of a convolution that commutes with turns and reflections.
+    """Return the kernel (8 * out, 8 * in, size, size) of a convolution that commutes with turns and mirrors.
 
-    `weight` (out, in, 8, size, size) are its parameters, `places` the result of `table`. `xp`: numpy or
-    torch.
+    `weight` (out, in, 8, size, size) are its parameters, `places` is ``table(size)``, `xp` numpy or torch.
     """
     out, into, _, size, _ = weight.shape
     spread = weight.reshape(out, into, -1)[:, :, places]
@@ -89,11 +88,11 @@ def convolution(weight: Any, places: Any, xp: Any) -> Any:
 
 
 def lift(weight: Any, seen: Any) -> Any:
-    """Return the matrix (8 out, FEATURES) of a network's first layer; `weight` has its parameters."""
+    """Return the first layer's matrix (8 * out, FEATURES), from `weight` (out, FEATURES) and `SEEN`."""
     return (weight[:, None, :, None] * seen).sum(2).reshape(ORDER * len(weight), -1)
 
 
 def projection(weight: Any, elements: Any, xp: Any) -> Any:
-    """Return the matrix (2 heads, 8 in) of the equivariant last layer, made from `weight` (heads, 2, in)."""
+    """Return the last layer's matrix (2 * heads, 8 * in), from `weight` (heads, 2, in) and `ELEMENTS`."""
     back = weight[:, None, :, :, None] * xp.moveaxis(elements, 0, -1)[:, :, None]
     return back.sum(2).reshape(2 * len(weight), -1) / ORDER

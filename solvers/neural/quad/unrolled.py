@@ -40,10 +40,10 @@ def unrolled(z: Any, centres: Any, xp: Any = np) -> tuple[Any, Any]:
 
 
 def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any = np) -> tuple[Any, Any, Any]:
-    """Return `walls` (batch, m + 1, n) unrolled to strips, centres (batch,), and a mask (see `unrolled`).
+    """Return closed lines `walls` (batch, m + 1, n) as strips, centres (batch,), and a mask (see `unrolled`).
 
-    The centre is the centroid inside the body's closed curve `wall` (batch, ni). If the lines of `walls` do
-    not wind exactly once around it, the centre is instead ``inside(walls[k, :-1, 0])``.
+    The centre is the centroid inside the body's closed curve `wall` (batch, ni). If one of the n lines does
+    not wind exactly once around it, the centre is the result of `inside` for the nodes of the first line.
     """
     centres = middles(wall[:, :-1], xp)
     strips, once = unrolled(walls, centres, xp)
@@ -55,17 +55,17 @@ def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any 
 
 
 def even(strips: Any, n: int, xp: Any = np) -> Any:
-    """Return `strips` (batch, m + 1, k) with `n` evenly spaced nodes on straight lines from side to side."""
+    """Return straight, even lines (batch, m + 1, n) between the ends of `strips` (batch, m + 1, k)."""
     eta = xp.linspace(0.0, 1.0, n, dtype=strips.real.dtype, device=strips.device)
     return strips[:, :, :1] * (1.0 - eta) + strips[:, :, -1:] * eta
 
 
 def factors(strips: Any, xp: Any = np) -> Any:
-    """Return factors (batch,) that scale periodic `strips` (batch, m + 1, n) to area 1 per half period."""
+    """Return factors (batch,) that scale `strips` (batch, m + 1, n) so that half a period has area 1."""
     heights = (strips[:, :-1, -1] - strips[:, :-1, 0]).imag.mean(1)
     return 1.0 / xp.sqrt(0.5 * TURN * heights)
 
 
 def rolled(strips: Any, centres: Any = 0.0, xp: Any = np) -> Any:
-    """Return O grids z (batch, m + 1, n) from strips i log(z - centre); `centres` (batch, 1, 1)."""
+    """Return O grids ``exp(-1j * strips) + centres`` (batch, m + 1, n), with `centres` (batch, 1, 1)."""
     return functions_of(xp).exp(times(-1j, strips)) + centres

@@ -22,7 +22,7 @@ ACCEPTED = 1e-4  # a slower one is still kept below this: the rest is in the hig
 
 @dataclass(frozen=True)
 class Strips:
-    """Conformal images (strips) of n domains around bodies, with Winslow's solutions, as Fourier modes."""
+    """Fourier modes of walls and Winslow's solution in n strips, conformal images of domains with a body."""
 
     wall: Complexes  # (n, 2 MODES + 1) modes of the position F on the wall
     far: Complexes  # (n, 2 MODES + 1) the same on the far field
@@ -78,9 +78,9 @@ def _solved(boundary: Boundary) -> tuple[Complexes, Complexes, Complexes] | None
 class StripTargets:
     """Training data: inputs, as `encode` returns them, and wanted outputs (n, 2 Q, COLUMNS).
 
-    The wanted outputs represent R, Winslow's solution minus the harmonic extension of the walls. They are
-    coefficients of R / (scale size^2) in `basis` (Q, LEVELS - 2), the proper orthogonal decomposition across
-    the strip in the H1 inner product. Their mean square norm is 1.
+    The wanted outputs represent R, Winslow's solution minus the harmonic extension of the walls, divided by
+    ``scale * size**2``, with `size` from `encode`. They are coefficients of the Q functions `basis`
+    (Q, LEVELS - 2) across the strip (proper orthogonal decomposition). Their mean square norm is 1.
     """
 
     channels: Floats
@@ -91,7 +91,7 @@ class StripTargets:
 
 
 def make_targets(strips: Strips, count: int) -> StripTargets:
-    """Return training data for `strips` and their mirror images; outputs refer to `count` basis functions."""
+    """Return training data for `strips` and their mirror images, with `count` functions across the strip."""
     # the mirror image F(theta) -> conj F(-theta) turns mode c_k into conj c_k
     wall, far, residual = (np.concatenate([c, c.conj()]) for c in (strips.wall, strips.far, strips.residual))
     channels, scalars, size = encode(wall, far)

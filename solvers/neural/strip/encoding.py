@@ -19,13 +19,13 @@ SLOPE = 0.3  # factor of slopes, which are larger than values by about their wav
 def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
     """Return the network's inputs for strips whose walls have the Fourier modes `wall` and `far`.
 
-    `wall` and `far` have the shape (batch, 2 MODES + 1). The inputs are three arrays:
+    `wall` (body) and `far` (far field) have the shape (batch, 2 MODES + 1). The periodic coordinate is theta.
+    The size is the root mean square deviation of the walls from straight lines. The inputs are three arrays:
 
-    - channels (batch, CHANNELS, COLUMNS): at the depths `DEPTHS`, the harmonic extension of the walls and its
-      slope along theta, both divided by the size;
-    - scalars (batch, SCALARS): the logarithm of the size, the height of the strip and its shear, each shifted
-      so that its magnitude is about one;
-    - size (batch,): the root mean square deviation of the walls from straight lines.
+    - channels (batch, CHANNELS, COLUMNS): the harmonic extension of the walls at the fractions `DEPTHS` of
+      the height, and its derivative along theta, both divided by the size;
+    - scalars (batch, SCALARS): logarithm of the size, height, and offset of `far` from `wall` along theta;
+    - size (batch,).
     """
     mean = (far - wall)[:, 0]
     a, b = (xp.concatenate([xp.zeros_like(side[:, :1]), side[:, 1:]], 1) for side in (wall, far))
@@ -43,8 +43,8 @@ def decode(coefficients: Any, basis: Any, scale: float, size: Any, xp: Any = np)
     """Return Fourier modes (batch, 2 MODES + 1, LEVELS) of Winslow's solution minus the harmonic extension.
 
     `coefficients` (batch, 2 Q, COLUMNS) are the outputs of the network, real parts first, then imaginary
-    parts. `basis` (Q, LEVELS - 2) has the basis functions at the inner Chebyshev points. `scale` is from
-    `StripTargets`, `size` (batch,) from `encode`.
+    parts. `basis` (Q, LEVELS - 2) has the basis functions at the inner Chebyshev points. The result is
+    multiplied by ``scale * size**2``, with `scale` from `StripTargets` and `size` (batch,) from `encode`.
     """
     q = len(basis)
     c = from_columns(coefficients[:, :q] + 1j * coefficients[:, q:], xp)

@@ -15,9 +15,9 @@ GATE = 0.3  # factor of b tanh(a)
 class StripNetwork:
     """A Fourier neural operator along theta, the periodic coordinate of strips, with given `weights`.
 
-    W, E and P are pointwise linear maps, K and K' spectral convolutions; [a, b] halves a result::
+    W, E, P are pointwise linear maps; K, K' are spectral convolutions; a, b are halves of the channels::
 
-        h <- a * b + gelu(a)                                  lifting, [a, b] = W (input)
+        h <- a * b + gelu(a)                                  [a, b] = W (input)
         h <- h + E gelu(a + K h) + 0.3 b tanh(a)              three times, [a, b] = conv5(h)
         out = P h + K' h
 

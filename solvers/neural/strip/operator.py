@@ -23,9 +23,9 @@ from meshonet.solvers.solution import Solution
 
 @dataclass(frozen=True)
 class StripOperator(Operator):
-    """A trained network for airfoils; without weights, Winslow's solver starts from the harmonic grid.
+    """Winslow's solver for airfoils, started from the harmonic grid, with a network's corrections if any.
 
-    `basis` and `scale` convert the network's outputs to corrections of that grid (see `StripTargets`).
+    `basis` and `scale` convert the network's outputs to these corrections (see `StripTargets`).
     """
 
     weights: Mapping[str, Floats] = field(default_factory=dict)  # of the network, float64
@@ -46,11 +46,11 @@ class StripOperator(Operator):
         return cls(name, "o", header, weights, basis, scale, StripNetwork(weights))
 
     def residual(self, wall: Complexes, far: Complexes, hand: NDArray[np.intp] | None = None) -> Complexes:
-        """Return modes (batch, 2 MODES + 1, LEVELS): Winslow's solution minus the harmonic extension.
+        """Return corrections of the harmonic extension, as Fourier modes (batch, 2 MODES + 1, LEVELS).
 
         `wall` and `far` (batch, 2 MODES + 1) are Fourier modes of the strip's two sides. `hand` (batch,) has
         signs from `meshonet.geometry.polygon.mirror.handedness`: with them, mirrored bodies get mirrored
-        grids, and symmetric bodies symmetric grids. Modes that Picard steps cannot correct are 0.
+        grids, and symmetric bodies symmetric grids. The highest modes are damped, as in Picard steps.
         """
         if self.network is None:
             return np.zeros((*wall.shape, LEVELS), complex)
