@@ -77,7 +77,7 @@ class Conversion:
         return copied(scaled(grid, self.scale) if self.scale != 1.0 else grid, self.copies)
 
     def read(self, source: str, fmt: str | None, *, boundaries: bool) -> Iterator[Grid | Boundary]:
-        """Yield the changed grids of `source`, or its changed boundaries if `boundaries` is set."""
+        """Yield the converted grids of `source`, or with `boundaries` the converted boundaries."""
         if not boundaries:
             return read_grids(source, fmt)
         sampling = Sampling(normalise=self.normalise)

@@ -40,7 +40,7 @@ class Format:
     many : whether one file can contain several grids or boundaries.
     one_size : whether all samples of a file must have the same node counts and topology.
     beside : whether other files are written next to the file, so that it cannot be written to a stream.
-    fills_folder : whether a grid is a folder of files; the file that users name stands for the folder.
+    fills_folder : whether a grid is a folder of files; a user names one of them, such as ``case.foam``.
     choices : options that a user may append to the name, in groups of which one may be chosen.
     reads_options : whether `read_grids` has a parameter ``options``, as `write_grids` has.
     suffix_options : for an extension, the option that it implies when a file is written.
@@ -79,9 +79,9 @@ class Format:
         return str(place / f"{place.resolve().name}{self.suffixes[0]}")
 
     def with_options(self, text: str) -> Format:
-        """Return the format with comma-separated options; a group after a colon overrides the group before.
+        """Return the format with comma-separated options; after a colon, they override those before.
 
-        Raises InputError if an option is unknown, or if two exclude each other.
+        Raises InputError if an option is unknown, or if two with no colon between them exclude each other.
         """
         if not text.strip(":"):
             return self
@@ -157,7 +157,7 @@ def size_of(sample: Boundary | Grid) -> str:
 
 
 def size_remedy(own: str, first: str) -> str:
-    """Return advice for a sample whose size `own` differs from the `first`; both are texts of `size_of`."""
+    """Return advice for a sample of size `own` where the first sample has size `first` (see `size_of`)."""
     kinds = {size.partition(" of ")[0].rpartition(" ")[2] for size in (own, first)}
     if "blocks" not in kinds:
         return "set {res} and {topology}"

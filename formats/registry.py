@@ -110,9 +110,9 @@ def picture_format(output: str, to_format: str | None = None) -> Format:
 def read_shapes(text: str, fmt: str | None = None, *, surfaces: bool = False) -> Iterator[Shape]:
     """Return an iterator over the shapes of a file, of standard input (``-``) or of ``naca:2412``.
 
-    Grids give their outer edges; with `surfaces`, flat patches in 3-D stay surfaces. After a shape that
-    raises InputError, the iterator continues if it can. Raises InputError, with the place, if the file cannot
-    be opened, is invalid or has an unknown format.
+    Grids give their outer edges. With `surfaces`, flat patches in 3-D are surfaces, not planar grids. After a
+    shape that raises InputError, the iterator continues if it can. Raises InputError, with the place, if the
+    file cannot be opened, is invalid or has an unknown format.
     """
     if is_designation(text):
         if fmt:
@@ -167,7 +167,7 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
 
 
 def read_sections(text: str, fmt: str | None = None) -> Iterator[Grid | Shape]:
-    """Yield the grids in a file. Layouts, designations and files without grids give shapes instead.
+    """Yield the grids of a file. A layout, a file without grids or a name such as ``naca:2412`` gives shapes.
 
     Raises InputError as `read_shapes`.
     """

@@ -87,7 +87,7 @@ def _section(
 
 
 def along(row: Table, direct: str, angle: str, z: float, before: list[Section]) -> float:
-    """Return x or y of the section in the table `row`, which is at `z` after the sections `before`.
+    """Return x or y of a section at the position `z`, from its table `row` and the sections `before` it.
 
     The value is that of the key `direct` (``x`` or ``y``), by default that of the previous section. Instead,
     the key `angle` (``sweep`` or ``dihedral``) may give the angle in degrees between the z axis and the line
@@ -109,7 +109,7 @@ def along(row: Table, direct: str, angle: str, z: float, before: list[Section]) 
 def section_shape(row: Table, folder: Path) -> Airfoil | Outline:
     """Return the shape of a section from its table; paths are relative to `folder`.
 
-    Raises InputError unless the table has one of the keys `airfoil` and `outline`, for exactly one shape.
+    Raises InputError unless the table has one of the keys `airfoil` and `outline`, and it names one shape.
     """
     keys = [key for key in ("airfoil", "outline") if key in row.data]
     remedy = "name one file, or a designation such as naca:2412"

@@ -31,7 +31,7 @@ _CUT = "the file is cut short: write it again"  # remedy for a truncated file
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the only grid of `grids` as SU2; its markers have the names of patches."""
+    """Write a grid as SU2, with patches as markers. Raises InputError unless `grids` has exactly one."""
     grid = only_one(grids, "a .su2 file")
     refuse_collapsed(grid, "a .su2 file")
     mesh = unstructured(grid)

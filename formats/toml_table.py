@@ -119,7 +119,7 @@ class Table:
         return x, y
 
     def pairs(self, key: str, least: int, columns: str = "x, r") -> list[list[float]]:
-        """Return a list of at least `least` pairs of numbers; messages call them `columns`."""
+        """Return the `least` or more pairs of numbers at `key`; `columns` is what messages call a pair."""
         rows = self.data.get(key)
         if not isinstance(rows, list) or len(rows) < least:
             raise self.error(

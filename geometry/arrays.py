@@ -218,7 +218,7 @@ def planar_nodes(ni: int, nj: int) -> Floats:
 
 
 def as_planar(nodes: Floats) -> Floats:
-    """Return `nodes` (ni, nj, ..., d) as float64 in planar layout (`planar_nodes`), copied only if needed."""
+    """Return `nodes` (ni, nj, ..., d) as float64 with each coordinate contiguous, copied only if needed."""
     last = nodes.ndim - 1
     planes = np.asarray(nodes, dtype=np.float64).transpose(last, *range(last))
     return np.ascontiguousarray(planes).transpose(*range(1, last + 1), 0)

@@ -54,7 +54,7 @@ def conditions(base: Node, zone: Node, counts: Triple, block: int) -> Iterator[F
 def interfaces(
     base: Node, zone: Node, counts: Triple, block: int
 ) -> Iterator[tuple[str, FaceWindow, str, Points, Triple]]:
-    """Yield name and nodes of each interface of a zone; path, corners and index order of its donor."""
+    """Yield each interface of a zone: name and nodes, then path, corners and index order of the donor."""
     for _, group in children(zone, "ZoneGridConnectivity_t"):
         for name, joint in children(group, "GridConnectivity1to1_t"):
             ranges = dict(children(joint, "IndexRange_t"))

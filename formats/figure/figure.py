@@ -161,7 +161,7 @@ def frame(views: Sequence[Box], bar: bool) -> tuple[Figure, list[Axes], Axes | N
 
 
 def step_words(steps: list[int]) -> str:
-    """Return a note on which lines are drawn, every k-th for the ascending k in `steps`; empty if all.
+    """Return a note on grid lines left out, or ""; a step k of the ascending `steps` draws every k-th line.
 
     >>> step_words([1, 5]), step_words([2]), step_words([1])
     ('not all lines are drawn', 'every 2nd line', '')

@@ -203,7 +203,7 @@ def _blocks(sizes: Floats) -> NDArray[np.intp]:
 
 
 def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
-    """Return (lengths along i, areas), then (lengths along j, areas), of some of the cells in view."""
+    """Return (edge lengths along i, areas), then the same along j, (n,) each, of n of the cells in view."""
     i, j = np.nonzero(part.mask)
     stride = max(1, len(i) // _SAMPLE)
     i, j = i[::stride] + part.i0, j[::stride] + part.j0
@@ -216,7 +216,7 @@ def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tup
 def line_step(length: Floats, area: Floats, pixels: float) -> int:
     """Return k = 1, 2, 5, 10, ... such that every k-th line is drawn, usually 6 pixels or more apart.
 
-    `length` and `area` are a pair from `line_gaps`; `pixels` is the number of pixels per unit of length.
+    `length` (n,) are distances between lines, `area` (n,) areas of cells; `pixels` is per unit of length.
     """
     length = length * pixels
     order = np.argsort(length)

@@ -29,8 +29,8 @@ _AT_ONCE = 1 << 13  # number of nodes that are looked up together
 class RowSections:
     """Sections of the volume grid of a blade row.
 
-    The axis is the axis of rotation between periodic sides. Without periodic sides, it is the axis of the
-    full ring, else the x axis. Raises InputError if `grid` is no volume with patches `hub` and `shroud`.
+    The axis of rotation is found from periodic sides or from a full ring; otherwise it is the x axis. Raises
+    InputError if `grid` is no volume with patches `hub` and `shroud`.
     """
 
     grid: Grid

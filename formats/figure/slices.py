@@ -83,7 +83,7 @@ def layers(grid: Grid, at: Slice, values: list[Floats] | None) -> list[CellSheet
 
 @dataclass(frozen=True, eq=False)
 class Cut:
-    """Polygons (n, 12, 2) in which a plane cuts n cells, padded by their last corner; cell values (n,)."""
+    """Section through n cells: polygons (n, 12, 2), each filled up with its last corner; cell values (n,)."""
 
     polygons: Floats
     values: Floats | None

@@ -100,7 +100,7 @@ def check_flat(view: View) -> None:
 
 
 def flat_box(zoom: tuple[float, ...] | None, across: int | None = None) -> Box | None:
-    """Return the planar part of the box `zoom`, without the axis `across`. Raises InputError: not planar."""
+    """Return `zoom` as four limits, without those of `across` if it has six. Raises InputError: not four."""
     if zoom is None:
         return None
     if len(zoom) == 6 and across is not None:

@@ -52,7 +52,7 @@ class PartFacts:
 
 
 def part_facts(path: Path) -> PartFacts:
-    """Return the description of the part in the file `path`. Raises InputError if it cannot be read."""
+    """Return the description of a dataset's part from its file. Raises InputError if it cannot be read."""
     facts = PartFacts(path)
     source = Source(printable(str(path)), path=path)
     with opened(source, texts=False) as file:
@@ -108,7 +108,7 @@ class Part:
 def shown_parts(file: h5py.File, source: Source) -> list[Part] | None:
     """Return the parts of a dataset in order, or None if the open `file` is no index of parts.
 
-    Raises InputError if a part is missing or elsewhere, or if the samples of parts are not consecutive.
+    Raises InputError if a part is missing or not in a folder beside the index, or if parts leave a gap.
     """
     import h5py
 
@@ -148,7 +148,7 @@ def _parts(mappings: Any, index: Path, split: str) -> Iterator[Part]:
 
 
 def write_index(file: Path, index: Path, parts: Sequence[PartFacts]) -> None:
-    """Write the index of `parts` to `file`, a temporary file for `index`. Raises InputError: sizes differ."""
+    """Write a dataset's index to `file`, to be moved to `index`. Raises InputError: `parts` do not match."""
     filled = [facts for facts in parts if facts.count]
     first = filled[0]
     for facts in filled[1:]:

@@ -2,7 +2,7 @@
 
 
 class UniqueNames:
-    """Names of the samples of a dataset so far; each new name is made unique.
+    """Names for the samples of a dataset: a repeated name gets a number; empty names stay empty.
 
     >>> names = UniqueNames()
     >>> [names.add(name) for name in ("tip", "root", "tip", "", "", "tip")]

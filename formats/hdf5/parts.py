@@ -56,7 +56,7 @@ class PartFiles:
 
     @property
     def folder(self) -> Path:
-        """The folder of the parts: the path of the index without extension."""
+        """The folder of the parts, such as ``out`` for the index file ``out.h5``."""
         return self.index.with_suffix("")
 
     def path(self, number: int) -> Path:
@@ -94,9 +94,9 @@ class PartFiles:
         return 0
 
     def state(self, number: int, inputs: Sequence[Input]) -> State:
-        """Return the state of a part of a dataset: ``missing``, ``complete``, or ``extended`` if it must be.
+        """Return whether a part of a dataset is ``missing``, is ``complete``, or has to be ``extended``.
 
-        A part must be extended if there are more `inputs` now, or if an input that failed has changed or may
+        A part has to be extended if there are more `inputs` now, or if a failed input has changed or may
         succeed now. Raises OtherPartsError if the part was made of other inputs or settings, InputError if it
         cannot be read.
         """

@@ -26,7 +26,7 @@ T = TypeVar("T")
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:
-    """Return an iterator over the boundaries of a file; for grids, they are outer edges or domains.
+    """Return an iterator over the boundaries in a file, or over the outer edges of the grids in it.
 
     An invalid sample raises InputError; the iterator then continues with the next sample.
     """
@@ -166,7 +166,7 @@ class DatasetSamples:
                 yield str(error)
 
     def named(self, start: int, stop: int, step: int = 1) -> str:
-        """Return text, such as ``FILE#0:9:2``, for each `step`-th sample from `start` to `stop` - 1."""
+        """Return one text, such as ``FILE#0:9:2``, for samples `start` to `stop` - 1 in steps of `step`."""
         rows = self.rows[start:stop:step]
         split = f"{self.split}," if self.split else ""
         words = f"{rows[0]}" if len(rows) == 1 else f"{rows.start}:{rows.stop}"

@@ -56,7 +56,7 @@ def layout_of(text: str) -> Layout:
 
 
 def read_shapes(source: Source) -> Iterator[DomainShape]:
-    """Yield the domain of a block layout, as a shape that keeps its blocks."""
+    """Yield one shape: the domain of a block layout together with its blocks."""
     layout = read_layout(source)
     yield DomainShape(layout.mesh.domain, layout=layout)
 

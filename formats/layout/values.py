@@ -20,18 +20,18 @@ class Values:
     place: str = ""
 
     def error(self, problem: str) -> InputError:
-        """Return an error that names this place."""
+        """Return an error that names the place of this object."""
         return InputError(problem, "write the layout again", place=self.place)
 
     def rows(self, key: str) -> list[Values]:
-        """Return a non-empty list of objects."""
+        """Return the non-empty list of JSON objects at `key`."""
         rows = self.data.get(key)
         if not isinstance(rows, list) or not rows or not all(isinstance(row, dict) for row in rows):
             raise self.error(f"{key} are no list of objects")
         return [Values(row, f"{key}[{k}]") for k, row in enumerate(rows)]
 
     def row(self, key: str) -> Values:
-        """Return the value of a key, an object."""
+        """Return the JSON object at `key`."""
         row = self.data.get(key)
         if not isinstance(row, dict):
             raise self.error(f"{key} is no object")
@@ -45,32 +45,32 @@ class Values:
         return value
 
     def texts(self, key: str) -> list[str]:
-        """Return the value of a key, a list of non-empty texts."""
+        """Return the list of non-empty texts at `key`."""
         values = self.data.get(key)
         if not isinstance(values, list) or not all(isinstance(each, str) and each for each in values):
             raise self.error(f"{key} are no texts")
         return values
 
     def count(self, key: str, *, default: int | None = None) -> int:
-        """Return an integer that is not negative."""
+        """Return the integer at `key`, which is not negative."""
         value = self.data.get(key, default)
         if type(value) is not int or not 0 <= value < 1 << 31:
             raise self.error(f"{key} is no count")
         return value
 
     def number(self, key: str, below: int) -> int:
-        """Return an integer from 0 to `below` - 1."""
+        """Return the integer at `key`, from 0 to `below` - 1."""
         return self._below(key, self.data.get(key), below)
 
     def numbers(self, key: str, below: int) -> list[int]:
-        """Return a list of integers from 0 to `below` - 1."""
+        """Return the list at `key`, of integers from 0 to `below` - 1."""
         values = self.data.get(key)
         if not isinstance(values, list):
             raise self.error(f"{key} are no list")
         return [self._below(key, value, below) for value in values]
 
     def entry(self, key: str, k: int, of: int, below: int) -> int:
-        """Return entry `k` of a list of `of` integers from 0 to `below` - 1."""
+        """Return entry `k`, an integer from 0 to `below` - 1, of the list at `key`, which has length `of`."""
         values = self.data.get(key)
         if not isinstance(values, list) or len(values) != of:
             raise self.error(f"{key} are not {of} numbers")

@@ -63,7 +63,7 @@ def recovered(nodes: Floats, name: str = "") -> Grid:
 def usable(nodes: Floats) -> Floats:
     """Check `nodes` (ni, nj, 2), (ni, nj, 3) or (ni, nj, nk, 3) of a grid, and return them unchanged.
 
-    Raises InputError if a direction has only one node, or a coordinate is not finite or above `LARGEST`.
+    Raises InputError if a direction has only one node, or if a coordinate is NaN or larger than `LARGEST`.
     """
     if min(nodes.shape[:-1]) < 2:
         counts = " x ".join(map(str, nodes.shape[:-1]))

@@ -57,11 +57,11 @@ class _Slice(NamedTuple):
 def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> list[IndexedNodes]:
     """Return the nodes of each block of a file, given as coordinates x, y[, z] of shape (n1, n2, n3) each.
 
-    Blocks are planar if each has one or two planes of nodes in which a coordinate is constant, with the same
-    values in all blocks; this coordinate is left out. Otherwise, or in the context `surfaces_wanted`, a block
-    with one plane of nodes is a surface patch; other blocks are volumes. Left-handed planar blocks and
-    volumes are reversed along i. `places` are names of blocks in messages. Raises InputError if a block has
-    no cells.
+    Blocks are planar if each is one layer of nodes with constant x, y or z, or two such layers that differ
+    only in this coordinate. The coordinate has the same values in all blocks and is left out. Otherwise, or
+    in the context `surfaces_wanted`, a block of one layer is a surface patch; other blocks are volumes.
+    Left-handed planar blocks and volumes are reversed along i. `places` are names of blocks in messages.
+    Raises InputError if a block has no cells.
     """
     with np.errstate(all="ignore"):  # what is not finite is refused later, with its place
         slices = []
@@ -78,7 +78,7 @@ def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> 
 
 
 def planar(coordinates: Sequence[Floats]) -> Floats:
-    """Return the nodes (ni, nj, 2) of a block whose planes are all equal. Raises InputError: they differ."""
+    """Return the nodes (ni, nj, 2) of a plane, or of shifted copies of one. Raises InputError: neither."""
     with np.errstate(all="ignore"):
         cut = _slice_of(coordinates, most=max(coordinates[0].shape))
         if cut:

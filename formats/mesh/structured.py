@@ -79,10 +79,10 @@ def grids_of_file(
 ) -> Iterator[Grid]:
     """Yield the grids of a file; `lattices` decides whether its blocks are planar.
 
-    Blocks that touch form one grid, and all surface patches form one grid. Other blocks are separate grids.
-    If there are several, each has the name of its block, else `name` with a number. Unnamed outer edges of
-    planar blocks get names. Raises InputError: a block without cells; unusable nodes; interfaces that do not
-    coincide.
+    Blocks that touch form one grid, and so do all blocks that are surface patches. A single grid has the name
+    `name`. Of several grids, one of a named block has the block's name, others `name` with a number. Unnamed
+    outer edges of planar blocks get names. Raises InputError: a block without cells; unusable nodes;
+    interfaces that do not coincide.
     """
     if blocks:
         read = lattices([block.coordinates for block in blocks], [block.place for block in blocks])

@@ -49,10 +49,10 @@ class MeshBoundary:
 def shapes_of(surface: MeshBoundary, name: str) -> Iterator[Shape]:
     """Yield the shapes that the closed curves of a mesh boundary form.
 
-    A four-sided domain keeps its nodes if opposite sides have equal numbers of nodes. Its corners are found
-    from the cells, or as the points where names of edges change, if there are four. The south side contains
-    the first edge of the file. A body and a far field keep their nodes if the cells between them are an O
-    grid. Raises InputError if edges are too few, too many or not closed, or if a curve lies in a hole.
+    A four-sided domain keeps its nodes if opposite sides have equal numbers of nodes. Its four corners are
+    the nodes with one cell each, or the points where names of edges change. The south side contains the
+    first edge of the file. A body and a far field keep their nodes if the cells between them are an O grid.
+    Raises InputError if edges are too few, too many or not closed, or if a curve lies in a hole.
     """
     edges = surface.edges or {"": _free_edges(surface.cells)}
     count = sum(map(len, edges.values()))

@@ -27,7 +27,7 @@ class Unstructured:
     Parameters
     ----------
     points : (n, 2 or 3), in the unit of the grid.
-    cells : (m, 4) or (m, 8) node numbers, ordered as in `meshonet.formats.mesh.cell_faces`; i varies fastest.
+    cells : (m, 4) or (m, 8) node numbers of each cell in the order of VTK; cells block by block, i fastest.
     faces : for each name, (k, 2) edges or (k, 4) quadrilaterals (`faces_of`); periodic ones are last.
     periodic : pairs of periodic boundaries.
     """
@@ -51,7 +51,7 @@ def unstructured(grid: Grid) -> Unstructured:
 
 
 def points_of(grid: Grid, numbers: Sequence[Indices]) -> Floats:
-    """Return the nodes (n, d) of a grid in the order of their `numbers`, which connected nodes share."""
+    """Return points (n, d): point k is the node with the number k in `numbers`, an array for each block."""
     count = 1 + max(int(number.max()) for number in numbers)
     points = np.empty((count, grid.blocks[0].nodes.shape[-1]))
     for number, block in zip(numbers, grid.blocks, strict=True):

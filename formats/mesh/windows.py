@@ -87,7 +87,7 @@ def part_of(window: FaceWindow, lattices: Sequence[IndexedNodes]) -> SidePart | 
 
 
 def patch_of(face: Face, lattices: Sequence[IndexedNodes]) -> Patch | None:
-    """Return the patch at a face, or None if the face is not on one side of a block. Errors as `part_of`."""
+    """Return the patch of a rectangle of nodes; None if it is not on exactly one side (see `part_of`)."""
     part = part_of(face.window, lattices)
     if part is None:
         return None

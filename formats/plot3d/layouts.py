@@ -87,7 +87,7 @@ class Candidate:
     stream : content of the file.
     real, integer : number types of coordinates, and of node counts or other integers.
     planes : whether the arrays of a block are stored plane by plane.
-    numbers, kind : number type and byte order, for messages and as options of the format.
+    numbers, kind : number type and byte order, first as text for messages, then as options of the format.
     """
 
     layout: FileLayout
@@ -158,8 +158,8 @@ class Candidate:
     def regularity(self) -> float:
         """Return the fraction of cells with the prevailing orientation; negative if values are impossible.
 
-        Orientations are random if the assumed file layout is wrong. The result is reduced for a surface: what
-        is read as z may be iblank of a planar grid. Only the first nodes along each index are examined.
+        Orientations are random if the assumed file layout is wrong. A surface gets a smaller result, as its z
+        may be the iblank of a planar grid. Only the first nodes along each index are examined.
         """
         for block in self.blocks:
             if not all(_sane(values) for values in self.arrays(block)):

@@ -35,7 +35,7 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 
 
 def write_map(path: Path, grids: Sequence[Grid], span: int = 2) -> None:
-    """Write the neutral map of all blocks; their index k becomes number `span` (0, 1 or 2) in the file."""
+    """Write the neutral map of all blocks; `span` is the place of index k in the file: 0, 1 or 2."""
     dims: list[list[int]] = []
     rows: list[str] = []
     for grid in grids:

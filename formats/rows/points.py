@@ -26,7 +26,7 @@ def point_blocks(source: Source, orders: Sequence[str]) -> list[Floats]:
     """Return the blocks (n, k) of points in a file; all have the same number k of columns.
 
     `orders` lists the permitted columns, such as ``x, y, z`` or ``x, r``; k tells which apply. Raises
-    InputError, with the place: other columns; no block; a splitter blade.
+    InputError if the columns are others, if there is no block, or if a heading names a splitter blade.
     """
     return [points for points, _ in placed_blocks(source, orders)]
 

@@ -55,7 +55,7 @@ class Line(NamedTuple):
 def decode(data: bytes) -> str:
     r"""Return bytes as text; they are UTF-8, UTF-16 with a byte-order mark, or else Latin-1.
 
-    Raises InputError if there are more than `MOST_BYTES`, or if bytes do not occur in texts.
+    Raises InputError if there are more than `MOST_BYTES`, or if zero bytes show that it is no text.
 
     Examples
     --------
@@ -142,7 +142,7 @@ def _next_kind(kinds: list[Kind], k: int, step: int) -> Kind:
 
 
 def left_out(lines: list[Line]) -> tuple[str, ...]:
-    """Return notes on ignored lines: HTML, and lines without two numbers next to rows of numbers."""
+    """Return notes on ignored lines: HTML among rows of numbers, and damaged lines directly beside a row."""
     kinds: list[Kind] = ["blank", *map(attrgetter("kind"), lines), "blank"]
     notes, first, last = [], 0, 0
     if "row" in kinds:

@@ -53,7 +53,7 @@ FILE_AXES = AircraftAxes()
 
 
 def axes_of(points: Floats) -> AircraftAxes | None:
-    """Return the axes of a file if its `points` (n, 3) are half an aircraft; None for a whole aircraft."""
+    """Return which axes point up and along the span, if `points` (n, 3) are half an aircraft; else None."""
     flat = FLAT * float(np.ptp(points, axis=0).max())
     for span in (2, 1):
         for sign in (1, -1):

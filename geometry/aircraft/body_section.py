@@ -38,7 +38,7 @@ class BodySection:
     exponent : float, optional
         Exponent of the superellipse: 2 gives an ellipse, more a rectangle with rounded corners.
     points : array, optional
-        Points (n, 2) of y and z, where z >= 0, from bottom to top or back, in place of a superellipse.
+        Half the section in place of a superellipse: y and z (n, 2) from bottom to top or reverse, z >= 0.
 
     Raises
     ------

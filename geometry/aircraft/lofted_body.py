@@ -26,7 +26,7 @@ class LoftedBody(Body):
 
     At the arc length s of the meridian and the angle theta, a point of the surface is (x, middle - up * shape
     * cos(theta), across * shape * sin(theta)). `across` is half the width of the section, `up` half its
-    height, `middle` the y half way between keel and crown, and `shape` a distance as in `BodySection.shape`.
+    height, `middle` the y half way between keel and crown, and `shape` a factor, which is 1 for an ellipse.
     The attributes ``meridian`` and ``y`` describe a similar body of revolution, whose radius is the mean of
     `across` and `up`.
 
@@ -145,7 +145,7 @@ class LoftedBody(Body):
         return radius * flatness, radius * (2.0 - flatness), self._middle(x)
 
     def shape(self, s: Floats, theta: Floats) -> Floats:
-        """Return the factor `shape` (n,) of `LoftedBody` at arc lengths `s` (n,) and angles `theta` (n,)."""
+        """Return distances (n,) from the middle, relative to an ellipse, at arc lengths and angles (n,)."""
         arcs = self.arcs
         before = np.clip(np.searchsorted(arcs, s, side="right") - 1, 0, len(arcs) - 2)
         h = arcs[before + 1] - arcs[before]

@@ -52,7 +52,7 @@ class SurfaceWing:
 
     @classmethod
     def ending(cls, strips: tuple[Floats, ...], name: str = "wing") -> Self:
-        """Return the wing with the surface `strips`; a tip that becomes thin is cut off.
+        """Return the wing with these `strips` (see the class); where the tip becomes thin, it is cut off.
 
         Raises InputError if the wing has no thickness.
         """
@@ -76,7 +76,7 @@ class SurfaceWing:
 
     @property
     def z(self) -> Floats:
-        """Equally spaced z (n,) up to the tip; they begin where all lines along the span have begun."""
+        """Equally spaced z (n,) from the first complete section, at the root, to the tip."""
         begin = max(float(strip[0, :, 2].max()) for strip in self.strips)
         return np.linspace(begin, self.height, _LEVELS)
 
@@ -98,7 +98,7 @@ class SurfaceWing:
 
     @cached_property
     def arcs(self) -> Floats:
-        """Arc length (strips,) of each strip around the section at half span, in chords."""
+        """Lengths (n,), in chords, of the n strips of nodes that surround the section, at half span."""
         z = self.z[[_LEVELS // 2]]
         lengths = [float(norms(np.diff(at_heights(strip, z)[0], axis=0)).sum()) for strip in self.strips]
         return np.array(lengths) / self.sizes(z)[0]
@@ -126,7 +126,7 @@ class SurfaceWing:
         return self.lines(np.array([place]))[0]
 
     def lines(self, places: Floats) -> list[Floats]:
-        """Return lines (stations, 3) along the span at ascending positions `places` (n,); see `line`."""
+        """Return lines (stations, 3) along the span at ascending `places` around the section (see `line`)."""
         numbers = np.minimum(places.astype(int), len(self.strips) - 1)
         out: list[Floats] = []
         for number in range(len(self.strips)):
@@ -139,7 +139,7 @@ class SurfaceWing:
         return float(np.interp(place, np.arange(len(self.strips) + 1), self._bounds))
 
     def places(self, arcs: Floats) -> Floats:
-        """Return the positions (n,) around the section at arc lengths `arcs` (n,); the inverse of `arc`."""
+        """Return places (n,) around the section (see `line`) at arc lengths (n,); the inverse of `arc`."""
         return np.interp(arcs, self._bounds, np.arange(len(self.strips) + 1))
 
     @property

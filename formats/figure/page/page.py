@@ -40,7 +40,7 @@ def write_page(path: Path, grid: Grid, metric: str | None = "max_angle", view: V
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write an interactive HTML page of the only grid in `grids`."""
+    """Write an interactive HTML page of a grid. Raises InputError unless `grids` has exactly one."""
     write_page(path, only_one(grids, "a page"))
 
 

@@ -32,9 +32,9 @@ _LAYERS = 3  # fewest layers across each direction of such a volume
 
 @dataclass(frozen=True, eq=False)
 class Lattice:
-    """Nodes (ni, nj, d) or (ni, nj, nk, 3) of a block or of a part of it.
+    """Nodes (ni, nj, 2 or 3) or (ni, nj, nk, 3) of a block, or of one layer of nodes of a volume block.
 
-    `start` has the indices of its first cell in the block. `fixed` is the direction normal to a surface.
+    `start` is its first cell in the block, and `fixed` (0, 1 or 2) the direction normal to a layer.
     """
 
     block: int
@@ -55,11 +55,11 @@ class Lattice:
 
 @dataclass(frozen=True)
 class SceneSheet:
-    """A drawn layer of cells of a lattice (a block, or a part of a block of a large volume).
+    """A layer of cells to draw, in a lattice: the nodes of a block, or of one layer of a large volume.
 
-    The layer has the index `node` along the direction `axis`; if `axis` is None, it is the whole lattice.
-    `ranges` are its first and last nodes along the other directions. In a part of a block, `across` (i, j or
-    k) and `at` are the direction and the index of the layer in the whole block.
+    It has the index `node` along the direction `axis`; if `axis` is None, it is the whole lattice. `ranges`
+    are its first and last nodes along the other directions. For a layer inside a large volume, `across` (i,
+    j or k) and `at` are its direction and its index in the block.
     """
 
     lattice: int
@@ -72,7 +72,7 @@ class SceneSheet:
     at: int = 0
 
     def facts(self) -> dict[str, Any]:
-        """Return the description of the layer for the JavaScript of the page."""
+        """Return all fields by name, for the JavaScript of the page."""
         return dict(vars(self))
 
 
@@ -87,7 +87,7 @@ class Scene:
 def scene_of(grid: Grid, layer: tuple[str, int] | None = None, shown: str | None = None) -> Scene:
     """Return the content of the page of a grid with all its metrics; the metric `shown` comes first.
 
-    `layer` is a direction (i, j or k) and an index. A large volume shows this layer in addition.
+    A large volume shows its patches, some layers, and `layer`: a direction (i, j or k) and an index.
     """
     lattices, sheets = _whole(grid) if _fits(grid) else _in_part(grid, layer)
     low = np.min([lattice.nodes.reshape(-1, lattice.nodes.shape[-1]).min(axis=0) for lattice in lattices], 0)

@@ -46,7 +46,7 @@ def article(label: str, report: QualityReport, gates: Sequence[Gate], number: in
 
 
 def size_words(report: QualityReport) -> str:
-    """Return the numbers of nodes (or blocks), cells and folded cells of a grid as text."""
+    """Return the size of a grid as text: nodes of a single block or number of blocks, cells, folded cells."""
     grid, quality = report.grid, report.quality
     folded = f"{quality.folded:,} folded" if quality.folded else "none folded"
     if len(grid.blocks) == 1:
