@@ -44,15 +44,15 @@ class Draw:
         return self.low + (self.high - self.low) * float(rng.random())
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return the boundary with the node counts of `sampling`."""
+        """Return the boundary with the node counts of `sampling`. Raises InputError: other settings."""
         ni, nj = sampling.ni or NODES, sampling.nj or NODES
         if self.family is None:
             module = import_module(f"meshonet.geometry.families.{RANDOM[self.kind]}")
             drawn: Boundary = module.boundary(np.random.default_rng([self.seed, self.index]), ni, nj)
-            return replace(drawn, name=self.name)
-        origin = Origin((("parameter", self.parameter),), self.split)
-        drawn = self.family.boundary(self.parameter, ni, nj)
-        return replace(drawn, name=self.name, origin=origin)
+        else:
+            origin = Origin((("parameter", self.parameter),), self.split)
+            drawn = replace(self.family.boundary(self.parameter, ni, nj), origin=origin)
+        return replace(drawn, name=self.name).boundary(replace(sampling, ni=None, nj=None))
 
 
 @dataclass(frozen=True)

@@ -26,8 +26,11 @@ class Annulus:
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return the O boundary of the body with the given far field.
 
-        Raises InputError: another topology than ``o``; a setting that does not apply to the body.
+        Raises InputError: another topology; a far field; a setting that does not apply to the body.
         """
+        if sampling.far_field is not None:
+            problem = "a domain with a boundary of its own has no far field"
+            raise InputError(problem, "leave {far_field} out", source=self.name)
         if sampling.topology not in ("auto", "o"):
             raise InputError("a body in a far field makes an O grid", "use {topology} o", source=self.name)
         boundary = self.body.boundary(replace(sampling, topology="o"))

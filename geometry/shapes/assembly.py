@@ -71,13 +71,11 @@ def assembled(
 
 
 def _check_airfoils(shapes: Sequence[Shape], sampling: Sampling) -> None:
-    """Raise InputError for what only airfoils have, if none of the shapes is one."""
-    of_airfoils = {"base": sampling.base, "smooth": sampling.smooth, "te": sampling.te != "auto"}
+    """Raise InputError for fields that only airfoils use, if none of the shapes is one."""
     bodies = [shape.body if isinstance(shape, Annulus) else shape for shape in shapes]
     bodies = [body.shape if isinstance(body, Labelled) else body for body in bodies]
-    name = next((name for name, value in of_airfoils.items() if value), "")
-    if name and not any(isinstance(body, Airfoil) for body in bodies):
-        raise InputError("none of the shapes is an airfoil", f"leave {{{name}}} out")
+    if not any(isinstance(body, Airfoil) for body in bodies):
+        sampling.check_airfoil("")
 
 
 def domain_of(shape: Shape, sampling: Sampling) -> DomainShape:

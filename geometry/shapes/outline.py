@@ -71,25 +71,11 @@ class Outline:
         topology = self.topology if sampling.topology == "auto" else sampling.topology
         if sampling.corners is not None and sampling.topology == "auto":
             topology = "quad"
-        quad, steps = topology == "quad", sampling.le_spacing or sampling.te_spacing
+        sampling.check_airfoil(self.name)
+        quad, given = topology == "quad", sampling.corners is not None
         for wrong, problem, remedy in (
-            (topology == "c", "topology c needs the trailing edge of an airfoil", "use o or quad"),
-            (steps, "{le_spacing} and {te_spacing} need an airfoil", "leave them out"),
-            (
-                sampling.te != "auto",
-                "only an airfoil has a trailing edge",
-                "leave {te} out, or write the points of an airfoil to a .dat file",
-            ),
-            (sampling.wake or sampling.wake_nodes, "only an airfoil has a wake", "leave {wake} out"),
-            (sampling.smooth, "only an airfoil can be smoothed", "leave {smooth} out"),
-            (sampling.base, "only an airfoil has a trailing edge to open", "leave {base} out"),
-            (sampling.base_nodes, "only an airfoil has a base", "leave {base_nodes} out"),
-            (sampling.normalise, "only an airfoil can be normalised", "leave {normalise} out"),
-            (
-                sampling.corners is not None and not quad,
-                "an O grid has no corners",
-                "leave {corners} out, or use {topology} quad",
-            ),
+            (topology == "c", "{topology} c needs the trailing edge of an airfoil", "use o or quad"),
+            (given and not quad, "an O grid has no corners", "leave {corners} out, or use {topology} quad"),
             (
                 sampling.far_field is not None and quad,
                 "a four-sided domain has no far field",

@@ -21,7 +21,7 @@ class Law:
     """A spacing: a law by which nodes are distributed along a curve."""
 
     place: Callable[[Floats], Floats] | None = None  # the function s(q), 0 to 1; None: set by the curve
-    sets_ends: bool = False  # whether the cells at the two ends of a stretch can be prescribed
+    sets_ends: bool = False  # whether le_spacing and te_spacing apply; then tanh replaces `place`
 
 
 def _cosine(q: Floats) -> Floats:

@@ -19,6 +19,8 @@ MULTIPLES = (8, 4, 2, 1)
 It is the largest that divides the number of cells, and for which there are enough.
 """
 MOST_NODES = 100_000  # per direction: more is taken for a typing error
+OF_OUTLINES = ("ni", "nj", "nk", "topology", "spacing", "far_field", "corners", "viscous", "refined")
+"""Fields of `Sampling` that closed curves use; all others are for airfoils only."""
 
 
 @dataclass(frozen=True)
@@ -132,6 +134,13 @@ class Sampling:
         if self.refined > 1:
             return (self.refined,)
         return MULTIPLES[MULTIPLES.index(math.gcd(cells, MULTIPLES[0])) :]
+
+    def check_airfoil(self, what: str) -> None:
+        """Raise InputError if a field is given that only airfoils use; `what` names the shape."""
+        for name, value in vars(self).items():
+            if name not in OF_OUTLINES and value != getattr(Sampling, name):
+                remedy = f"leave {{{name}}} out, or write the points of an airfoil to a .dat file"
+                raise InputError(f"{{{name}}} needs an airfoil", remedy, source=what)
 
     @property
     def radius(self) -> float:

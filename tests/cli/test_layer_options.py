@@ -53,9 +53,6 @@ def test_te_rounds_a_blunt_edge(meshonet: Meshonet, command: str) -> None:
     )
     assert sharp > 125
     assert rounded < 102
-    Path("bump.csv").write_text("0,0\n2,0\n2.5,1\n0,1\n")
-    done = meshonet(command, "bump.csv", "--te", "round", "-o", "g.h5")
-    assert (done.code, "only an airfoil has a trailing edge; leave --te out" in done.err) == (2, True)
 
 
 @pytest.mark.parametrize("command", LAYER_COMMANDS)

@@ -1,48 +1,46 @@
 """Options that a shape or a method has no use for are refused, not passed over."""
 
+from dataclasses import fields
 from pathlib import Path
 
-import numpy as np
 import pytest
 from command_line import BOUNDARY_COMMANDS, Meshonet, dataset, duct
+from effects import SHAPES
+from test_every_option import nodes
 
-USELESS = {
-    "a four-sided outline": ("duct.csv", "--res 31x15", ["--far-field 9"]),
-    "a body": (
-        "disc.csv", "--res 41x15",
-        ["--topology o --corners 0,10,20,30", "--te round", "--base .01", "--wake 5"],
-    ),
-    "a domain": ("square.csv", "", ["--te round", "--base .01", "--smooth 1e-4"]),
-    "given edges": (
-        "edges.h5",
-        "",
-        [
-            "--topology o", "--spacing tanh", "--le-spacing .01", "--te-spacing .01", "--far-field 9",
-            "--corners 0,1,2,3", "--te round", "--wake 5", "--wake-nodes 9", "--base .01", "--base-nodes 9",
-            "--smooth 1e-4", "--normalise",
-        ],
-    ),
-    "an O grid": ("naca:2412", "--res 41x15 --topology o", ["--wake 5", "--wake-nodes 9"]),
-}  # fmt: skip
+from meshonet.geometry.spacing.sampling import Sampling
+
+NO_OPTIONS = {"--ni", "--nj", "--nk", "--viscous", "--refined"}
+OPTIONS = {"--" + each.name.replace("_", "-") for each in fields(Sampling)} - NO_OPTIONS
+ONE_BLOCK = (
+    "box.csv --res 31x15",
+    "body.csv --res 41x15 --topology o",
+    "hole.csv --res 41x15 --topology o",
+    "edges.h5",
+    "naca:2412 --res 61x15 --topology o",
+    "naca:2412 --res 61x41 --topology c --te wedge",
+)
+RUNS = [f"{command} {words}" for command in BOUNDARY_COMMANDS for words in ONE_BLOCK]
+RUNS += ["infer hole.csv --cells 900", "infer naca:2412 --cells 900", "sample-boundary --family arch --res 9"]
 
 
-@pytest.mark.parametrize(("kind", "words"), [(kind, w) for kind, (*_, ws) in USELESS.items() for w in ws])
-@pytest.mark.parametrize("command", BOUNDARY_COMMANDS)
-def test_an_option_that_the_shape_has_no_use_for_is_refused(
-    meshonet: Meshonet, command: str, kind: str, words: str
-) -> None:
-    edges = duct(31, 15)
-    dataset(Path("edges.h5"), "quad", edges)
-    ring = [edges["south"], edges["east"][1:], edges["north"][-2::-1], edges["west"][-2:0:-1]]
-    Path("duct.csv").write_text("\n".join(f"{x},{y}" for side in ring for x, y in side))
-    t = np.linspace(0, 2 * np.pi, 40, endpoint=False)
-    Path("disc.csv").write_text("\n".join(f"{x},{y}" for x, y in zip(np.cos(t), np.sin(t), strict=True)))
-    Path("square.csv").write_text("0 0\n9 0\n9 9\n0 9\n\n4 4\n4 5\n5 5\n5 4\n")
-    source, base, _ = USELESS[kind]
-    done = meshonet(command, source, *base.split(), *words.split(), "-o", "none.h5")
-    assert (done.code, len(done.err.splitlines())) == (2, 1)
-    assert "; leave --" in done.err
-    assert not Path("none.h5").exists()
+@pytest.mark.parametrize("run", RUNS)
+def test_every_kind_of_shape_applies_or_refuses_an_option(meshonet: Meshonet, run: str) -> None:
+    """Each field of `Sampling` that is an option, with its words of `EFFECTS`."""
+    dataset(Path("edges.h5"), "quad", duct(31, 15))
+    Path("box.csv").write_text("0 0\n2 0\n3 1\n0 1\n")
+    Path("body.csv").write_text("4 4\n4 5\n5 5\n6 3\n")
+    Path("hole.csv").write_text("0 0\n9 0\n9 9\n0 9\n\n4 4\n4 5\n5 5\n5 4\n")
+    base, made = [*run.split(), "-q", "-o"], Path("made.h5")
+    assert meshonet(*base, "plain.h5").code == 0
+    for option in sorted(OPTIONS - set(base)):
+        done = meshonet(*base, made, *SHAPES[option][1].replace("OPTION", option).split())
+        if done.code:
+            assert (done.code, len(done.err.splitlines()), made.exists()) == (2, 1, False), done.err
+            assert option in done.err
+        else:
+            assert nodes(made) != nodes(Path("plain.h5")), f"refuse {option}, or apply it"
+            made.unlink()
 
 
 def test_a_fallback_without_a_network_is_refused(meshonet: Meshonet) -> None:

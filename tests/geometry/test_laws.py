@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -71,3 +73,4 @@ def test_a_new_law_is_one_line(monkeypatch):
     wall = naca("0012-sharp").boundary(settings).south
     steps = np.hypot(*np.diff(wall, axis=0).T)
     assert (np.diff(steps[:28]) > 0).all()
+    naca("0012-sharp").boundary(replace(settings, topology="c"))

@@ -73,7 +73,7 @@ def test_an_array_of_an_airfoil_is_one_as_its_file_is(tmp_path: object, settings
 def test_an_array_that_is_no_airfoil_stays_an_outline() -> None:
     square = np.array([[0, 0], [2, 0], [2, 1], [0, 1]], dtype=float)
     assert meshonet.grid(square, res=(11, 11)).topology == "quad"
-    with pytest.raises(meshonet.InputError, match="only an airfoil has a trailing edge"):
+    with pytest.raises(meshonet.InputError, match="te needs an airfoil"):
         meshonet.grid(square, res=(11, 11), te="round")
 
 

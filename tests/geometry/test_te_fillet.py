@@ -70,7 +70,7 @@ def test_marched_grids_are_nearly_orthogonal_round_the_edge(airfoil: Airfoil) ->
 
 
 def test_what_has_no_trailing_edge_or_no_such_law_is_refused() -> None:
-    with pytest.raises(InputError, match="only an airfoil has a trailing edge; leave te out, or write"):
+    with pytest.raises(InputError, match="te needs an airfoil; leave te out, or write"):
         Outline(np.eye(3)[:, :2]).boundary(Sampling(20, 20, topology="o", te="round"))
     with pytest.raises(InputError, match="trailing edge 'blade' is not known; use auto/exact/round/wedge"):
         Sampling(te="blade")  # type: ignore[arg-type]

@@ -28,6 +28,7 @@ from meshonet.geometry.shapes.airfoil.section_curve import (
     swapped_note,
 )
 from meshonet.geometry.shapes.far_field import o_boundary
+from meshonet.geometry.spacing.laws import LAWS
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
 
 __all__ = ["SHARP_GAP", "Airfoil"]
@@ -256,9 +257,10 @@ class Airfoil:
                 sampling.viscous and not (body.blunt or body.base_is_round) and body.wedge <= _WIDEST_WEDGE
             )
             topology = "c" if sharp else "o"
-        if topology == "o" and (sampling.wake or sampling.wake_nodes):
-            remedy = "leave {wake} out, or use {topology} c"
-            raise InputError("an O grid has no wake", remedy, source=self.name)
+        for name in ("wake", "wake_nodes"):
+            if topology == "o" and getattr(sampling, name):
+                remedy = f"leave {{{name}}} out, or use {{topology}} c"
+                raise InputError("an O grid has no wake", remedy, source=self.name)
         notes = body.notes + shape_notes(self._section, self.curve, self.chord)
         if te != "exact" or sampling.te == "exact":
             notes += edge_notes(self, body, te, sampling.te)
@@ -292,7 +294,7 @@ class Airfoil:
         step = (sampling.te_spacing or C_EDGE / ni) * chord
         cells = cells_of_wake(ni, sampling.wake_nodes, step, length, sampling.corner_steps(ni - 1))
         law = "curvature" if sampling.spacing == "auto" else sampling.spacing
-        te = sampling.te_spacing if law in ("uniform", "cosine", "conformal") else step / self.chord
+        te = sampling.te_spacing if LAWS[law].place or law == "conformal" else step / self.chord
         wall = self.wall(ni - 2 * cells, replace(sampling, spacing=law, te_spacing=te))
         axis = wake_axis(original.leading_edge, original.trailing_edge)
         first = 0.5 * float(np.hypot(*(wall[[1, -2]] - wall[0]).T).sum())
