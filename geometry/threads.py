@@ -76,8 +76,7 @@ def in_threads(work: Callable[[Item], Made], items: Sequence[Item]) -> list[Made
 def over_blocks(work: Callable[[Item], Made], items: Sequence[Item], nodes: Sequence[int]) -> list[Made]:
     """Return the results of `work` for each of `items`; `nodes` are the node counts of the items.
 
-    Items with many nodes are processed one by one, since their kernels use all threads. Other items are
-    processed concurrently.
+    Items with many nodes are processed one by one, each with all threads; other items concurrently.
     """
     many = [threads_for(count) > 1 for count in nodes]
     few = [item for item, alone in zip(items, many, strict=True) if not alone]
@@ -93,7 +92,7 @@ def run_in_threads(jobs: Sequence[Callable[[], Any]]) -> list[Any]:
 
 @contextmanager
 def limited_to(threads: int | None) -> Iterator[None]:
-    """Limit the number of kernel threads within the ``with`` block; None changes nothing.
+    """Limit the number of threads of compiled functions within the ``with`` block; None changes nothing.
 
     Python threads that are started inside do not inherit the limit. Raises InputError: fewer than one.
     """

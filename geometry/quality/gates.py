@@ -54,10 +54,10 @@ class Gate:
         return in_short(self._what, figure, self.compare, self.limit)
 
     def replaces(self, figure: str, compare: str) -> bool:
-        """Return whether this gate takes the place of a profile's limit on `figure`.
+        """Return whether this limit of the user replaces a limit on the value `figure` in a quality profile.
 
-        This is so if both limit the same statistic of `figure` in the same direction (upwards or downwards).
-        `compare` is the comparison of the profile's limit, such as ``<=``.
+        It does if both limit the same statistic in the same direction, upwards or downwards. `compare` is
+        the comparison in the profile, such as ``<=``.
         """
         return (self.metric, self.compare[0], self.statistic) == (figure, compare[0], end_of(compare))
 
@@ -67,12 +67,12 @@ class Gate:
 
 
 def beyond(value: float, compare: str, limit: float) -> bool:
-    """Return whether ``value > limit`` is true, with the operator `compare`; always true for NaN."""
+    """Return whether `value` is NaN or beyond the limit: if `compare` is ``<``, whether ``value < limit``."""
     return bool(COMPARE[compare](value, limit)) or value != value
 
 
 def end_of(compare: str) -> str:
-    """Return the default statistic of a gate: ``max`` for ``>``, ``min`` for ``<``."""
+    """Return ``max`` for the comparisons ``>`` and ``>=``, ``min`` for others."""
     return "max" if compare in (">", ">=") else "min"
 
 
@@ -92,16 +92,16 @@ def in_short(name: str, figure: Figure, compare: str, limit: float) -> str:
 
 @dataclass(frozen=True)
 class Judgement:
-    """The outcome of gates and profiles for one grid.
+    """The outcome of the user's limits (gates) and of quality profiles (sets of limits) for one grid.
 
     Parameters
     ----------
     problems : tuple of str
-        A line for each gate or check of a profile by which the grid fails.
+        A line for each limit by which the grid fails.
     beyond : tuple of str
         A short text for each problem and each warning, such as ``max_angle 178.2 > 170``.
     replaced : tuple of str
-        Limits of gates that override limits of a profile, such as ``box_ratio > 4000``.
+        The user's limits that replace limits of a profile, such as ``box_ratio > 4000``.
     profile : ProfileReport, optional
         The outcome of every check of the profiles.
     """
@@ -113,15 +113,15 @@ class Judgement:
 
     @property
     def verdict(self) -> Literal["pass", "warn", "fail"]:
-        """The worst outcome of all gates (limits of the user) and all checks of profiles."""
+        """The worst outcome of all limits, of the user's and of those in quality profiles."""
         return "fail" if self.problems else "warn" if self.beyond else "pass"
 
 
 def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
-    """Return the gate that `text` describes; figures named in `more` are permitted besides `FIGURES`.
+    """Return the condition `text`, such as ``max_angle > 170``, as an object; a grid fails if it is true.
 
-    Without a statistic, ``>`` limits the largest value of all cells, ``<`` the smallest. Raises InputError: a
-    text that is not a gate; an unknown metric or statistic.
+    Without a statistic, ``>`` is for the largest value of all cells, ``<`` for the smallest. `more` has names
+    of values besides those in this package. Raises InputError: no condition; unknown metric or statistic.
 
     >>> parse_gate("max_angle > 170").statistic, parse_gate("scaled_jacobian.p01<0.2").statistic
     ('max', 'p01')
@@ -152,7 +152,7 @@ def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
 
 
 def parse_gates(texts: Iterable[str] | None, more: Sequence[str] = ()) -> tuple[Gate, ...]:
-    """Return the gates (limits) that `texts` describe; they may name figures in `FIGURES` and in `more`."""
+    """Return the conditions `texts` as objects, each as `parse_gate` does; no texts for None."""
     return tuple(parse_gate(text, more) for text in texts or ())
 
 

@@ -43,7 +43,7 @@ class Lines:
 
 @dataclass(frozen=True)
 class BlockLines:
-    """Growth and turning of grid lines along a direction of a block, inside it or across one of its sides."""
+    """Growth ratios and bends (turning angles) of grid lines along `axis`, at nodes inside a block or not."""
 
     block: int
     axis: int
@@ -101,11 +101,10 @@ def _of(tallies: Iterable[Tally], *, kept: bool) -> Extreme | None:
 def part_of_values(
     place: tuple[int, ...], axis: int, inside: bool, values: Iterable[Floats], *, kept: bool = True
 ) -> BlockLines:
-    """Return growth and turning of the grid lines along `axis` through an array of nodes.
+    """Return statistics of `values` at an array of nodes: growth ratios and, if given, turning angles.
 
-    `values` are growth and, if computed, turning, each (m, n[, l]). `place` (block, i, j[, k]) is the first
-    node. `inside` says whether nodes are inside the block or on a side, `kept` whether percentiles are
-    wanted.
+    Each of `values` is (m, n[, l]), for grid lines along `axis`. The first node is `place`: block, i, j[, k].
+    `inside`: nodes are inside the block, not on a side. `kept`: statistics include percentiles.
     """
     tallies = Tally(kept=kept), Tally(kept=kept)
     for tally, each in zip(tallies, values, strict=False):

@@ -14,8 +14,8 @@ class GridMatcher:
     """Finds, for each grid, the grid of a reference set with which it is compared.
 
     Pairing is by ``name`` or by ``order``. With ``auto``, a single reference serves all grids. Several
-    references are paired by name if the first two have different names and one of all has the name of the
-    first grid. Otherwise they are paired by order. References are read only as far as needed.
+    references are paired by name if the first two references have different names, and a reference has the
+    name of the first grid; else by order. References are read only as far as needed.
     """
 
     def __init__(self, grids: Iterator[Grid], pairing: Pairing = "auto") -> None:

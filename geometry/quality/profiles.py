@@ -73,7 +73,7 @@ class CheckResult:
         return max(broken, key=lambda limit: limit.level == "fail", default=None)
 
     def under(self, gates: Sequence[Gate]) -> "CheckResult":
-        """Return the result with the user's limits on this figure (`gates`) in place of the profile's."""
+        """Return the result with the user's limits on its value, if `gates` has any, in place of its own."""
         compare = self.check.limits[0].compare
         own = [gate for gate in gates if gate.replaces(self.check.figure, compare)]
         limits = tuple(Limit("fail", gate.compare, gate.limit) for gate in own)
@@ -100,7 +100,7 @@ class ProfileReport:
         return all(result.verdict != "fail" for result in self.results)
 
     def under(self, gates: Sequence[Gate]) -> "ProfileReport":
-        """Return the report with the limits of `gates` in place of profile limits on the same figures."""
+        """Return the report with the user's limits `gates` in place of its own limits on the same values."""
         return replace(self, results=_once(result.under(gates) for result in self.results))
 
     def replaced(self) -> list[str]:

@@ -117,7 +117,7 @@ class QualityReport:
         return replace(self, profile=self.profile.under(_parsed(gates))) if self.profile else self
 
     def broken(self, gates: Gates = ()) -> list[str]:
-        """Return a line for each condition (gate) and each limit of a profile by which the grid fails.
+        """Return a line for each limit by which the grid fails, of `gates` and of the quality profile.
 
         `gates` is one text or several, such as ``max_angle>170`` or ``scaled_jacobian.p01<0.2``: conditions
         that must not hold. A line gives the value, its place and the limit.
@@ -132,7 +132,7 @@ class QualityReport:
         return lines + (self.profile.under(gates).failures() if self.profile else [])
 
     def judgement(self, gates: Gates) -> Judgement:
-        """Return whether the grid keeps the limits of the user (`gates`) and of the profiles."""
+        """Return whether the grid keeps the user's limits `gates` and those of its quality profile."""
         gates = _parsed(gates)
         beyond = [gate.in_short(figure) for gate, figure, broken in self.judged(gates) if broken]
         profile = self.profile.under(gates) if self.profile else None

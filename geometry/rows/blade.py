@@ -153,13 +153,16 @@ class BladeSurface:
         return CubicTable(values, self.knots)
 
     def at(self, u: Floats, h: Floats) -> Floats:
-        """Return s and angle theta (p, m, 2) on the blade, at places `u`, (m,) or (p, m), and heights `h`."""
+        """Return points s, theta (p, m, 2) of the blade, at heights `h` (p, m) from 0 (hub) to 1 (casing).
+
+        They are at places `u`, (m,) or (p, m), around the blade: 0 leading edge, 0.5 trailing edge.
+        """
         return self.crossings(self.lines(u.ravel()), h, len(h) if u.ndim == 1 else 1)
 
     def crossings(self, lines: CubicTable, h: Floats, levels: int = 1) -> Floats:
-        """Return s and theta (..., 2) at the heights `h` (...) on the m splines from the method `lines`.
+        """Return points s, theta (..., 2) of m splines along the span, at heights `h` (...).
 
-        See `Channel` for s, theta, h. Flattened, `h` is (levels, m): heights of all splines on each level.
+        `lines` are the splines, from the method `lines`; `h` is reshaped to (levels, m). See `Channel` for s.
         """
         out = np.empty((*h.shape, 2))
         spline_crossings(
@@ -172,7 +175,7 @@ class BladeSurface:
         return out
 
     def section(self, h: float, u: Floats) -> Floats:
-        """Return s (`Channel`) and theta (m, 2) at height `h` and places `u` (m,) around the blade."""
+        """Return points s, theta (m, 2) of the blade at height `h` (0 hub, 1 casing); see `at` for `u`."""
         return self.crossings(self.lines(u), np.full(len(u), h))
 
     @property
@@ -199,8 +202,7 @@ def _whole_pitches(angles: Floats, heights: Floats, pitch: float) -> Floats:
     """Return by how many pitches (p,) each profile is away from the blade to which most profiles belong.
 
     A step of theta between two profiles counts only if whole pitches remain after subtraction of the lean
-    between other profiles. `angles` (p,) are the mean theta of each profile in radians; `heights` (p,)
-    ascend.
+    between other profiles. `angles` (p,) are the mean theta of profiles in radians; `heights` (p,) ascend.
     """
     steps, rises = np.diff(angles), np.diff(heights)
     away = np.zeros(len(angles))

@@ -176,7 +176,7 @@ class Channel:
         return np.asarray(levels[zone] + (part - low) / (high - low) * (levels[zone + 1] - levels[zone]))
 
     def meridional(self, h: float) -> MeridionalMap:
-        """Return the map between s and the conformal coordinate m' on the surface of height `h`."""
+        """Return the map from s (0 inlet, 1 outlet) to conformal m' and back, at height `h` (casing: 1)."""
         s = self.hub.knots
         points = self.at(s, np.full(s.shape, h))
         speed = norms(CubicTable(points, s).slope(s)) / points[:, 1]

@@ -19,7 +19,7 @@ def on_cylinder(
     Parameters
     ----------
     section : the airfoil with its chord; its z is the radius.
-    about : point of the section, in chords from the leading edge, that is placed at `x` and `theta`.
+    about : x and y of the section's point at `x`, `theta`, in chords from the leading edge.
     stagger : angle of the chord from the axis, towards growing theta, in radians.
     x, theta : position of the point `about`; theta = atan2(y, z) in radians.
     """

@@ -28,6 +28,6 @@ def axis_along(direction: Sequence[float]) -> Motion:
 
 
 def axis_name(frame: Motion | None) -> str:
-    """Return the name of the axis that a rotation takes to x, such as ``-z``; ``axis`` if oblique."""
+    """Return the name, such as ``-z``, of the axis that `frame` rotates to x; for oblique axes, "axis"."""
     direction = AXES["x"] if frame is None else frame.turn[0]
     return next((name for name, each in AXES.items() if each == direction), "axis")

@@ -111,8 +111,7 @@ class BladeProfile:
     def reshaped(self, plane: Floats, heights: Floats) -> Self:
         """Return the profile through other points.
 
-        `plane` (n, 2) are their coordinates m' (see `MeridionalMap`) and theta, `heights` (n,) their heights
-        h.
+        `plane` (n, 2) has their m' (see `MeridionalMap`) and theta, `heights` (n,) has their h.
         """
         made = copy(self)
         made.__dict__ = {k: v for k, v in vars(self).items() if k not in ("thickness", "_heights")}
@@ -142,7 +141,10 @@ class BladeProfile:
         )
 
     def sharpness(self, trailing: bool) -> tuple[float, float]:
-        """Return the largest turn at an edge, in radians, and the share of the two largest in all turns."""
+        """Return the largest turn of the curve at one point of an edge, in radians, and a fraction.
+
+        The fraction is the sum of the two largest turns divided by the sum of all turns at the edge.
+        """
         bend = np.abs(turning(self.curve.points, closed=True))
         edge = self.trailing if trailing else self.leading
         own = np.sort(bend[np.abs(self._off(self.curve.knots, edge)) < self._reach])
@@ -207,7 +209,7 @@ class BladeProfile:
         return np.sort(wrapped(at, -0.25))
 
     def at(self, u: Floats) -> Floats:
-        """Return s, theta, h (n, 3), along, around and across the channel, at positions `u` (n,)."""
+        """Return coordinates s, theta, h (n, 3) in the channel (see `Channel`) at places `u` (n,), 0 to 1."""
         arcs = self.arcs(u)
         m, theta = self.curve.at(arcs).T
         return np.stack([self._map.back(m), theta, self._heights(arcs)], axis=1)

@@ -41,13 +41,12 @@ class Row:
     frame : Motion, optional
         Rotation from the coordinates of the grid to the coordinates of the row; None: no rotation.
     unit : {'m', 'cm', 'mm', 'in', 'ft'}, optional
-        Unit of lengths in reports; lengths of row and grid are then metres. Empty: no conversion.
+        Unit of lengths in reports. If it is given, the row must be in metres. Empty: the unit of the row.
 
     Raises
     ------
     InputError
-        Curves that form no channel; profiles in the wrong order or outside the channel; gaps wider than the
-        span.
+        Curves without a channel; profiles in wrong order or outside the channel; gaps wider than the span.
 
     Examples
     --------

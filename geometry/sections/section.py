@@ -38,17 +38,15 @@ class Section:
     about : tuple of 2 float, optional
         Centre of the twist, in chords from the leading edge.
     cant : float or 'panel', optional
-        Angle in degrees by which the plane is rotated about the line along x through the leading edge, with
-        the sign of a dihedral. ``panel``: by the dihedral of the adjacent panels (see `Stack.cants`).
+        Angle in degrees by which the section is rotated about a line along x through its leading edge, from
+        z towards y. ``panel``: the dihedral of the wing on both sides of the section (see `Stack.cants`).
     nodes : int, optional
-        Number of nodes along the span from the previous section to this one, both ends included. None: the
-        stack decides.
+        Number of nodes from the previous section to this one, both ends included. None: the stack decides.
 
     Raises
     ------
     InputError
-        A chord that is not positive; a value that is not finite; a cant beyond 90 degrees; fewer than 2
-        nodes.
+        A chord that is not positive; a value that is not finite; a cant beyond 90 degrees; one node.
     """
 
     shape: Airfoil | Outline
@@ -90,21 +88,21 @@ class Section:
 
     @property
     def placement(self) -> Floats:
-        """Chord, twist in radians, x, y and centre of the twist, which are interpolated between sections."""
+        """Chord, twist in radians, x and y of the leading edge, and centre of the twist in chords (6,)."""
         return np.array([self.chord, math.radians(self.twist), self.x, self.y, *self.about])
 
 
 class Fade(NamedTuple):
-    """Mixture of a section with the same section without twist and with another chord."""
+    """Weights with which the nodes of a section take part in its twist and its chord."""
 
-    weight: Floats  # (n,) share of the section as it is, at each node
+    weight: Floats  # (n,) 1: as the section has it; 0: no twist, and scaled to the other chord
     chord: float  # the other chord
 
 
 def placed(unit: Floats, placement: Floats, fade: Fade | None = None) -> Floats:
-    """Return the nodes (..., n, 2) of placed sections; `unit` are their nodes at unit chord.
+    """Return nodes (..., n, 2), x and y, of sections that are scaled, twisted and moved.
 
-    `placement` (..., 6) has the values of `Section.placement`; `fade` has weights for chord and twist.
+    `unit` are the nodes at unit chord. `placement` (..., 6): see `Section.placement`; `fade`: see `Fade`.
     """
     chord, twist, x, y, about_x, about_y = (placement[..., k, None] for k in range(6))
     if fade is not None:

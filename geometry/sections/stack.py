@@ -48,8 +48,7 @@ class Stack:
     Raises
     ------
     InputError
-        Fewer than two sections; z that does not increase; a length that is not positive or does not apply to
-        this kind.
+        Fewer than two sections; z that does not increase; lengths that are not positive or do not apply.
     """
 
     sections: tuple[Section, ...]
@@ -103,7 +102,7 @@ class Stack:
 
     @property
     def span(self) -> int | None:
-        """Number of nodes along the span; None unless all sections after the first give `nodes`."""
+        """Number of nodes along the span; None if it is not given for each part between two sections."""
         cells = [each for each in self.panel_cells if each is not None]
         return sum(cells) + 1 if len(cells) == len(self.panel_cells) else None
 
@@ -141,7 +140,7 @@ class Stack:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on points and files of the sections, and on steep panels."""
+        """Notes on points and files of sections, and on a dihedral that makes the wing thinner than these."""
         notes = [note for section in self.sections for note in section.shape.notes]
         return tuple(dict.fromkeys([*notes, *filter(None, [self.steep])]))
 
@@ -154,7 +153,8 @@ class Stack:
     def cants(self) -> Floats:
         """Angles (n,) in radians by which the sections are rotated about x.
 
-        The cant ``panel`` is the mean dihedral of the panels on both sides, and 0 in a plane of symmetry.
+        For sections with ``cant="panel"`` it is the mean dihedral of the wing on both sides of the section,
+        and 0 in a plane of symmetry.
         """
         panels = self.dihedrals
         own = np.concatenate([[0.0], 0.5 * (panels[1:] + panels[:-1]), panels[-1:]])
@@ -165,7 +165,7 @@ class Stack:
 
     @property
     def steep(self) -> str:
-        """Note on the panel with the greatest angle to its sections' normals; empty if that is small."""
+        """Note on the part of a wing that is most oblique to its sections; empty up to 20 degrees."""
         if self.kind != "wing":
             return ""
         inclined = np.abs(self.dihedrals - np.stack([self.cants[:-1], self.cants[1:]])).min(axis=0)
@@ -194,7 +194,7 @@ class Stack:
         return self.canted(nodes, z) if self.cants.any() else nodes
 
     def canted(self, nodes: Floats, z: Floats) -> Floats:
-        """Return `nodes` (m, ..., 3) of sections at `z` (m,), rotated by cant angles at leading edges."""
+        """Return `nodes` (m, ..., 3) of sections at `z` (m,), each rotated about x at its leading edge."""
         values = np.stack([np.array([section.y for section in self.sections]), self.cants], axis=1)
         y, cant = self.between_sections(values, z).reshape(len(z), *[1] * (nodes.ndim - 2), 2).T
         place = np.stack([y.T, z.reshape(y.T.shape)], axis=-1)

@@ -26,7 +26,7 @@ _STRAIGHT = 0.5  # a curve is a wall, not a closed outline, if its ends are this
 
 
 class DrawnEdge(NamedTuple):
-    """A side: its points (n, 2), the place of each point in the input, and a name, which may be empty."""
+    """A side: its points (n, 2), a text such as ``line 3`` for each of them, and a name or ``""``."""
 
     points: Floats
     places: Sequence[str]
@@ -38,7 +38,7 @@ class DrawnEdge(NamedTuple):
 
     @property
     def is_wall(self) -> bool:
-        """Whether the side is an open curve, such as the wall of a channel."""
+        """Whether the ends are more than half the length apart, as those of a channel's wall are."""
         length = float(np.hypot(*np.diff(self.points, axis=0).T).sum())
         return float(np.hypot(*(self.points[-1] - self.points[0]))) > _STRAIGHT * length
 

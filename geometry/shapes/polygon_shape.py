@@ -43,8 +43,7 @@ def polygon_shape(
 ) -> DomainShape:  # fmt: skip
     """Return the domain inside the first ring of `rings` and outside all other rings.
 
-    `periodic` gives the names of each pair of periodic sides. Raises InputError: as `ring_loop` and
-    `with_periodic_sides`.
+    `periodic` names pairs of periodic sides. Raises InputError: as `ring_loop` and `with_periodic_sides`.
     """
     loops = []
     for number, ring in enumerate(rings):
@@ -68,7 +67,7 @@ def polygon_shape(
 
 
 def domain_or_body(shape: Outline | Airfoil) -> Shape:
-    """Return `shape` itself, or the domain inside it if it has corners, but not four."""
+    """Return the domain inside an outline with corners, unless there are four; else `shape` itself."""
     if isinstance(shape, Airfoil) or shape.topology != "quad":
         return shape
     points = shape.curve.points

@@ -40,10 +40,9 @@ def cells_of_wake(
 ) -> int:
     """Return the number of cells along the wake of a C grid with `ni` nodes along xi.
 
-    A given `nodes_wanted` is the number of nodes on the wake. Otherwise cells grow by 13.5 % from the length
-    `first` until they fill `length`; 20 % to 23 % of all cells along xi are on each side of the wake. This
-    number of cells is rounded to a multiple of one of `steps`. Raises InputError if too few nodes are left
-    for the wall.
+    A given `nodes_wanted` is the number of nodes on the wake. Otherwise it has as many cells as fill `length`
+    if they grow by 13.5 % from the length `first`, but at least 20 % and at most 23 % of all cells along xi.
+    The number is rounded to a multiple of one of `steps`. Raises InputError: too few nodes for the wall.
     """
     if nodes_wanted is not None:
         cells = nodes_wanted - 1
@@ -88,7 +87,7 @@ def wake_line(wall: Floats, axis: Floats, chord: float, length: float, first: fl
 
 
 def growing(first: float, length: float, cells: int) -> Floats:
-    """Return distances (cells + 1,) of nodes along a `length` with growing cells, in units of `first`."""
+    """Return distances (cells + 1,) of nodes, divided by the length `first` of the first of growing cells."""
     if first * cells >= length or cells < 2:
         return np.arange(cells + 1.0)
     try:
@@ -130,8 +129,7 @@ def c_boundary(
 
     The wall runs clockwise from its sharp trailing edge. The wake ends in the direction of the unit vector
     `axis` (2,). The far field in front is a half circle with `centre` and `radius`. `curve`, `name`, `chord`
-    and `notes` are fields of `Boundary`. Raises InputError: the wake leaves the far field, or crosses the
-    wall.
+    and `notes` are fields of `Boundary`. Raises InputError: the wake leaves the far field or hits the wall.
     """
     south = np.concatenate([wake[:0:-1], wall[:-1], wake])
     north = c_far_field(len(wall) - 1, len(wake) - 1, centre, radius, axis, wake[-1])

@@ -27,8 +27,8 @@ def stretch_arcs(
     """Return arc lengths (cells + 1,) of nodes on a closed curve from `begin` to `end`, or once around.
 
     Unless `forward`, nodes run against the curve. With the spacing ``tanh``, end cells have a quarter of the
-    mean length. A spacing that needs more data than the curve is replaced by equal steps. The indices of
-    nodes at corners are multiples of `step` if there are enough nodes.
+    mean length. The spacings ``auto`` and ``conformal`` give equal steps. The indices of nodes at corners are
+    multiples of `step` if there are enough nodes.
     """
     sign = 1.0 if forward else -1.0
     length = (sign * (end - begin)) % curve.length or curve.length

@@ -18,7 +18,7 @@ class FirstCell:
     Parameters
     ----------
     first_cell : float or mapping, optional
-        Height in the unit of the request; for multi-block grids also a mapping from wall names to heights.
+        Height, in chords for a single block around a body. Or a mapping from names of walls to heights.
     y_plus : float or mapping, optional
         Height as y+, converted by the friction of a flat plate.
     reynolds : float, optional
@@ -76,7 +76,7 @@ class FirstCell:
     def heights(self, unit: float = 1.0) -> AtWalls | None:
         """Return the first-cell height, or heights by wall; None if not requested.
 
-        Heights are in the unit of `first_cell`. `unit` is the reference length for y+ if `length` is None.
+        `unit` is the reference length of y+, unless the field `length` sets it.
         """
         setting = self.first_cell if self.y_plus is None else self.y_plus
         if isinstance(setting, Mapping):
@@ -84,10 +84,10 @@ class FirstCell:
         return None if setting is None else self._height(setting, unit)
 
     def height(self, unit: float = 1.0) -> float | None:
-        """Return the first-cell height in the unit of the request; None if not requested.
+        """Return the first-cell height; None if not requested.
 
-        `unit` is the reference length if `length` is None. Raises InputError if walls have different heights
-        or a value is out of range.
+        `unit` is the reference length of y+, unless the field `length` sets it. Raises InputError if walls
+        have different heights or a value is out of range.
         """
         height = self.heights(unit)
         if isinstance(height, Mapping):
@@ -108,8 +108,8 @@ class FirstCell:
     ) -> tuple[str, ...]:
         """Return a note on how the first-cell height follows from y+; an empty tuple without y+.
 
-        `where` describes the reference length. `scale` is the factor from heights to the unit of the note,
-        which is called `in_unit`.
+        `unit` is the reference length of y+, unless the field `length` sets it; `where` describes it. The
+        note gives heights multiplied by `scale`, with `in_unit` as name of their unit.
         """
         from meshonet.geometry.spacing.y_plus import height_note
 

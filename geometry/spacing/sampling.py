@@ -54,14 +54,14 @@ class Sampling:
     wake : float, optional
         Length of the wake of a C grid in chords; None: the far-field distance.
     wake_nodes : int, optional
-        Number of nodes along the wake with the trailing edge. None: the cell length at this edge decides.
+        Number of nodes from the trailing edge to the end of the wake. None: by the cell length at this edge.
     base_nodes : int, optional
         Number of nodes on a blunt trailing edge with both corners; odd for an O grid. None: by its width.
     base : float, optional
         Thickness in chords to which thinner trailing edges of airfoils are opened.
     smooth : float, optional
-        Largest distance, in chords, of smoothing splines from the points of an airfoil; three standard
-        deviations of the noise suit. A trailing edge of at most this thickness is closed. Needs SciPy.
+        Largest distance, in chords, of smoothing splines from the points of an airfoil, such as three times
+        the standard deviation of noise. A trailing edge of at most this thickness is closed. Needs SciPy.
     refined : int, optional
         The node indices of corners are multiples of this number, so that the grid can be coarsened by it.
     viscous : bool, optional
@@ -126,7 +126,7 @@ class Sampling:
             raise InputError(problem, "give four point indices")
 
     def corner_steps(self, cells: int) -> tuple[int, ...]:
-        """Return numbers k, best first; corners on a wall of `cells` are at node indices divisible by k.
+        """Return numbers, largest first: one shall divide the node indices of corners on a wall of `cells`.
 
         >>> Sampling().corner_steps(404), Sampling().corner_steps(398), Sampling(refined=8).corner_steps(400)
         ((4, 2, 1), (2, 1), (8,))
@@ -164,7 +164,7 @@ def first_within(steps: tuple[int, ...], most: float) -> int:
 
 
 def nodes_beside(cells: int, every: int) -> str:
-    """Return as text the nearest node counts to `cells` + 1 with which cells are a multiple of `every`.
+    """Return as text how many nodes, near `cells` + 1, make the number of cells a multiple of `every`.
 
     >>> nodes_beside(49, 4), nodes_beside(3, 4)
     ('49 or 53', '5')

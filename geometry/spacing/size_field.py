@@ -40,9 +40,9 @@ def arcs_by_curvature(
     """Return arc lengths (cells + 1,) from one end of the trailing edge around the nose to the other.
 
     The cell size h combines four sizes, 1/h⁴ = Σ 1/hₖ⁴. The first two start at the trailing and at the
-    leading edge and increase by `GROWTH` times the distance. The third is the length on which the curve turns
-    by `TURN`. The fourth is a constant that gives the requested number of cells. If cells are too few, first
-    the growth is increased, then the size at the leading edge and the third size, at last all sizes.
+    leading edge and increase by `GROWTH`, a logarithm, times the distance. The third is the length on which
+    the curve turns by `TURN`. The fourth is a constant that gives the requested number of cells. If cells are
+    too few, first the growth is increased, then the size at the leading edge and the third, at last all.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def arcs_by_curvature(
     steps : cell sizes at the trailing and at the leading edge.
     exact : for each of the `steps`, whether it is prescribed, to be met within 0.5 %.
     hurried : whether growth may be `HURRY` times as fast if cells are too few.
-    at_edge : logarithm of the growth ratio next to the trailing edge, if larger than `GROWTH`.
+    at_edge : logarithm of the growth ratio next to the trailing edge; values below `GROWTH` have no effect.
     based : whether the ends are the corners of a blunt trailing edge, at which cells are small.
     """
     lower, nose, upper = stations
@@ -85,7 +85,7 @@ def arcs_by_curvature(
 
 
 def distances_by_curvature(curve: Curve, begin: float, way: float, cells: int) -> Floats:
-    """Return distances (cells + 1,) from `begin` of nodes along a closed curve, spaced by its curvature.
+    """Return distances (cells + 1,) along a closed curve from `begin` to nodes spaced by its curvature.
 
     `way` is the length of the part with nodes; it is negative against the direction of the curve.
     """

@@ -52,7 +52,7 @@ def check_manifold(nodes: Floats, lattices: tuple[Indices, ...], crowded: Indice
 
 
 def check_gaps(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> None:
-    """Raise InputError if two nodes on the rim of the surface, open `edges` (k, 2), nearly coincide."""
+    """Raise InputError if two end nodes of a surface's open `edges` (k, 2) nearly coincide."""
     if not len(edges):
         return
     length = np.sqrt(((nodes[edges[:, 0]] - nodes[edges[:, 1]]) ** 2).sum(axis=1))
@@ -73,7 +73,7 @@ def check_gaps(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> 
 
 
 def check_seams(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> None:
-    """Raise InputError if a node on the rim of the surface, open `edges` (k, 2), lies within one of these."""
+    """Raise InputError if an end node of one of a surface's open `edges` (k, 2) lies inside another."""
     ends = nodes[edges]
     along = ends[:, 1] - ends[:, 0]
     length = norms(along)

@@ -17,9 +17,9 @@ def turned_alike(
 ) -> tuple[list[int], list[int], tuple[int, int] | None]:
     """Return which patches to reverse so that each connected part of a surface has one orientation.
 
-    The first list has the number of the connected part of each of `count` patches. The second list has -1 for
+    The first list says for each of `count` patches to which connected part it belongs. The second has -1 for
     patches to be reversed, else 1. The third result is None, or a pair of patches if no orientation exists.
-    `patch` (4 m,) is the patch of each half-edge. `half_edges` are the half-edges' first and last nodes.
+    `patch` (4 m,) is the patch of each half-edge, `half_edges` its first and last node, `twin` its opposite.
     """
     first, _ = half_edges
     edges = np.flatnonzero(twin > np.arange(len(twin)))
@@ -50,10 +50,10 @@ def turned_alike(
 
 
 def closing_axes(nodes: Floats, sides: Indices, planes: Sequence[Plane]) -> list[int]:
-    """Return the axes of the planes of symmetry that close a surface.
+    """Return the directions (0, 1, 2 for x, y, z) of the normals of planes of symmetry that close a surface.
 
     `sides` is the result of `open_sides`. If one plane contains all open edges except the rim of a small
-    hole, such as the end of half a fuselage, only the axis of this plane is returned.
+    hole, such as the end of half a fuselage, only the direction for this plane is returned.
     """
     axes = sorted({plane.axis for plane in planes})
     slack = FLAT * extent_of(nodes)

@@ -53,7 +53,10 @@ def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
 
 
 def edges_in(nodes: Floats, sides: Indices, plane: Plane, slack: float) -> Indices:
-    """Return a mask (k,) of quads `sides` (k, 4) whose first two nodes are near a plane, but not all four."""
+    """Return which open edges are within `slack` of a plane, without edges of quads that lie in it.
+
+    `sides` (k, 4) is the result of `open_sides`. The result is a mask (k,).
+    """
     near = np.abs(nodes[sides, plane.axis] - plane.value) <= slack
     return np.asarray(near[:, :2].all(axis=1) & ~near[:, 2:].all(axis=1))
 

@@ -44,15 +44,15 @@ class Airfoil:
 
     ::
 
-                  upper  <----.             The curve runs clockwise from the trailing edge (the middle of
+                  upper  ---->              The curve runs clockwise from the trailing edge (the middle of
                .-----------------.___       a straight base) along the lower side; the leading edge is the
         LE    (                      --- TE point farthest from the trailing edge.
                '-------------------'''
-                  lower  ---->
+                  lower  <----
 
     The `points` (n, 2), in any unit and direction, are cleaned (see `clean_section`) unless they are a
-    `CleanSection`. `places` (n,) say where the input has the points, such as ``line 12``. `notes` say how
-    points were changed before. Raises InputError, with the place: the points are no airfoil.
+    `CleanSection`. `places` (n,) say where the input has the points, such as ``line 12``. `notes` say how the
+    caller changed the points. Raises InputError, with the place: the points are no airfoil.
     """
 
     chord: float  # distance from the leading to the trailing edge
@@ -107,10 +107,7 @@ class Airfoil:
 
     @property
     def unit(self) -> float:
-        """Unit of cell sizes at the wall: the chord, or 1 if the chord differs from 1 by at most 1 %.
-
-        The chord of a cambered section exceeds its nominal chord, for NACA 2412 by 8e-5.
-        """
+        """Unit of cell sizes at the wall: the chord, or 1 if the chord differs from 1 by less than 1 %."""
         return 1.0 if abs(self.chord - 1.0) < 0.01 else self.chord
 
     @cached_property
@@ -171,7 +168,7 @@ class Airfoil:
         return body
 
     def moved_apart(self) -> Airfoil:
-        """Return the airfoil with surfaces that are closer than 9e-5 chords moved apart to this distance."""
+        """Return the airfoil with both surfaces moved apart to 9e-5 chords wherever they are closer."""
         section = self._section.moved_apart()
         return Airfoil(section.points, self.name, notes=(*self.notes, moved_note(self._section, section)))
 

@@ -215,7 +215,10 @@ def _wake_cells(
 
 
 def corner_cell(cells: float, first: float, chord: float) -> float:
-    """Return the length of wall cells at a blunt trailing edge: `first`, or more if growth is too fast."""
+    """Return the length of wall cells at a blunt trailing edge.
+
+    This is `first`, or more if the `cells` around the airfoil would have to grow by over 50 % each.
+    """
     side = 0.5 * cells
     return max(first, chord / side * math.pow(_STEEP, -0.5 * side))
 

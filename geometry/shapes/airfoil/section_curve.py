@@ -36,7 +36,7 @@ _PARTS = 128  # parts of a stretch in the search for the point farthest from the
 
 
 def swapped_note(section: CleanSection, places: Sequence[str]) -> tuple[str, ...]:
-    """Return a note that names the swapped points of a section; `places` names each of its points."""
+    """Return a note on neighbouring points that were swapped; `places` has a name for each given point."""
     named = ", ".join(places[k] if places else f"point {k}" for k in section.swapped[:6])
     more = ", ..." if len(section.swapped) > 6 else ""
     return (Change(f"the outline is changed: points in the wrong order are swapped ({named}{more})"),)
@@ -45,10 +45,10 @@ def swapped_note(section: CleanSection, places: Sequence[str]) -> tuple[str, ...
 def section_curve(
     section: CleanSection, places: Sequence[str]
 ) -> tuple[Curve, tuple[str, ...], InputError | None]:
-    """Return the curve through a section's points, notes, and the error that its surfaces cross, or None.
+    """Return the curve through a section's points, notes, and None or an error: upper and lower side cross.
 
-    Surfaces that cross only by rounding are moved apart (see `shapes.airfoil.separate_surfaces`). Intervals
-    in which the curve would cross itself are made straight.
+    Sides that cross only by rounding are moved apart (see `shapes.airfoil.separate_surfaces`). Intervals in
+    which the curve would cross itself are made straight.
     """
     notes: list[str] = []
     crossed = None
@@ -190,7 +190,7 @@ def opened_note(height: float, thickness: float) -> str:
 
 
 def edge_notes(before: Airfoil, after: Airfoil, te: TrailingEdge, option: TrailingEdge) -> tuple[str, ...]:
-    """Return a note: how treatment `te` changed the trailing edge, or that `option` has no effect."""
+    """Return a note on what `te` did to the trailing edge; `option` is what the user chose, or ``auto``."""
     base = f"the outline is changed: its base, {before.gap / before.chord:.3g} chords wide,"
     if before.blunt and te == "wedge":
         length = float(np.hypot(*(after.trailing_edge - before.trailing_edge))) / before.chord

@@ -62,8 +62,8 @@ def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
 def half_rounds(curve: Curve, end: float, cells: int) -> tuple[Floats, Floats]:
     """Return distances (n + 1,) of nodes from the middle of a rounded base, for its lower and its upper half.
 
-    Cells are smaller where the curve turns more. `curve` and `end` are the results of `rounded_base`.
-    `cells`, at least 3, is the number of cells on a half that turns by 90 degrees.
+    Cells are smaller where the curve turns more. `curve` and `end` are the results of `rounded_base`. A half
+    that turns by 90 degrees has about `cells` cells. `cells` is at least 3.
     """
     per_cell = 64
     n = per_cell * cells  # on either half; index n is the middle
@@ -130,7 +130,7 @@ def wedged_base(section: CleanSection, tangents: tuple[Floats, Floats]) -> Clean
 
 
 def opened_base(airfoil: Airfoil, gap: float) -> CleanSection:
-    """Return the section with a blunt trailing edge of height `gap`, with a change linear along the chord."""
+    """Return the section, opened linearly along its chord to a blunt trailing edge of height `gap`."""
     curve, section = airfoil.curve, airfoil._section
     points, knots, index, corners = curve.points, curve.knots, section.index, section.corners
     if airfoil.blunt:
