@@ -50,7 +50,7 @@ class Destination:
     put : function that writes to a path; None: the writer of the format.
     part_size : number of inputs in a part of a dataset; None: derived from `nodes`.
     nodes : approximate number of nodes of a result.
-    space : kind of three-dimensional blocks of the results; None: they are planar.
+    space : "volumes" or "surfaces" for results in three dimensions; None: planar results.
 
     Raises InputError if a field or extension is unknown, or the format cannot be written or split into parts.
     """
@@ -108,9 +108,10 @@ class Destination:
     def part_size_for(self, inputs: Inputs | DrawnInputs, files: Files, *, elsewhere: bool) -> int:
         """Return the number of inputs in a part of the dataset; 0 if the output has no parts.
 
-        The output has parts if the user asks for them, if parts exist, and for a shard or more than `MANY`
-        inputs. Parts are smaller for a shard, or if workers may be on other machines (`elsewhere`). Raises
-        InputError if an existing dataset would be replaced or cannot be continued.
+        There are parts if the user asks for them, or if a dataset in parts is continued. There are also parts
+        for more than `MANY` inputs, and with ``--shard``, where each job has a share of the inputs. Then, or
+        if workers may be on other machines (`elsewhere`), parts are smaller. Raises InputError if an existing
+        dataset would be replaced or cannot be continued.
         """
         if not inputs.more_than(0):
             return 0
@@ -132,7 +133,7 @@ class Destination:
         return self._part_size or PartFiles(index).size_there() or usual_part_size(self._nodes, most)
 
     def part_files(self, make: object, size: int) -> PartFiles:
-        """Return the files of a dataset in parts of `size` inputs, given the settings `make` of its grids."""
+        """Return the files of a dataset, each with the grids of `size` inputs, made with settings `make`."""
         from meshonet.formats.hdf5.parts import PartFiles, digest_of
         from meshonet_cli.batch.settings_text import described
 
@@ -140,7 +141,7 @@ class Destination:
         return PartFiles(Path(self.text), request, size)
 
     def check_several(self, item: Item[Any]) -> None:
-        """Raise InputError if the output can store only one result, since `item` is one of several."""
+        """Raise InputError if the output stores only one result; the input of `item` has several."""
         if not (self.each or self.format.many):
             problem = f"holds several grids or boundaries, and a {self.format.name} file holds one"
             raise InputError(problem, self._named("index"), source=item.source)

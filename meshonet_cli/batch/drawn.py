@@ -8,13 +8,13 @@ from meshonet.geometry.families.draw import Draw
 
 @dataclass(frozen=True)
 class DrawnInputs:
-    """Members of a family of shapes as inputs: all members, or the members in one of n shards."""
+    """Shapes drawn from a family as inputs: with the `shard` (k, n), every n-th from the k-th on."""
 
     draws: Sequence[Draw]
     shard: tuple[int, int] = (1, 1)
 
     def own(self) -> Iterator[Draw]:
-        """Yield the members of the shard, which is every n-th member for n shards."""
+        """Yield the inputs of this job: with the `shard` (k, n), every n-th shape from the k-th on."""
         k, n = self.shard
         return map(self.draws.__getitem__, range(k - 1, len(self.draws), n))
 

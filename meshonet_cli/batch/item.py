@@ -38,7 +38,7 @@ class Item(Generic[T]):
 
     @property
     def label(self) -> str:
-        """Name of the member in messages."""
+        """Name of this shape or grid in messages: its input, and its own name if the input has several."""
         source = "stdin" if self.source == "-" else printable(self.source)
         return source if self.only else f"{source}[{self.name or self.index}]"
 

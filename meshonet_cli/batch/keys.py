@@ -19,7 +19,7 @@ class Keys:
         self._names = UniqueNames()
 
     def named(self, item: Item[Any], what: Any) -> Any:
-        """Return `what` (grid or boundary) under a unique name; a name that is replaced becomes its title."""
+        """Return a grid or boundary `what` with a unique name. Without a title, its old name becomes one."""
         if not isinstance(what, Grid | Boundary):
             return what
         key = self._names.add(item.stem if _of_file(item) else what.name)

@@ -35,7 +35,7 @@ class PartTask:
 
 @dataclass
 class PartDone:
-    """Result of a task: the state of a part and what became of its members."""
+    """A file of a dataset after the task that makes it, with a report or an error for each of its grids."""
 
     number: int  # of the part
     path: str  # of its file
@@ -57,8 +57,7 @@ class PartMaker:
     def __call__(self, part: PartTask) -> PartDone:
         """Make a part atomically.
 
-        Raises OtherPartsError: the existing part differs, or must not be skipped; InputError: the part cannot
-        be written.
+        Raises OtherPartsError: the existing part differs, or must not be skipped; InputError: writing fails.
         """
         inputs = [each for entry in part.inputs for each in digests_of(entry)]
         state = self.files.state(part.number, inputs)

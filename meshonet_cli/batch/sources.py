@@ -49,7 +49,7 @@ def records(
 ) -> Iterator[Item[Any]]:  # fmt: skip
     """Yield the members of all inputs; for an unreadable member, the item contains the error.
 
-    With `alone`, a member of a family is treated as the only member of an input.
+    With `alone`, the only input of a batch is read; a shape drawn from a family then needs no number.
     """
     count = 0
     for each in inputs:

@@ -26,7 +26,7 @@ _option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 # fmt: off
 @dataclass(frozen=True, kw_only=True)
 class ConvertedFiles(o.FileOptions):
-    """Files of other formats."""
+    """Options for files, with the name of the output file as the last argument or after ``-o``."""
 
     output: o.Output = ""
 

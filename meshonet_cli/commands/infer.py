@@ -33,7 +33,7 @@ def infer(
     ),
     polish: str = _option(
         default="auto", metavar="auto|off|N", help="Number of solver iterations after the neural operator. "
-        "off: none. auto: as many as suit the model. Without --model, off or N selects the default model for "
+        "off: none. auto: as many as suit the model. off or N without --model selects the default model for "
         "the topology.",
     ),
     answer: Literal["valid", "pasted", "raw"] = _option(
@@ -56,9 +56,9 @@ def infer(
     O grids are made by a conformal map, or with a first cell by marching from the wall. C grids are marched.
     Four-sided grids are made by the variational method, or with a first cell by Winslow's equations. Other
     planar domains are split into blocks. Volumes inside six faces are made by the variational method. With a
-    first cell, the volume outside a surface is marched. A neural operator makes the grid with --model,
-    --polish, --device or --fallback, and around bodies that have no suitable conformal map; the report then
-    gives the expected error.
+    first cell, the volume outside a surface is marched. With --model, --polish, --device or --fallback, and
+    for bodies without a suitable conformal map, a neural operator makes the grid; the report then gives the
+    expected error.
     """
     from meshonet_cli.tasks.grids import write_grids
 

@@ -58,9 +58,9 @@ def solve_pde(
     ),
     coarse: str = _option(
         default="auto", metavar="auto|off|N", help="Solve on at most N x N nodes and interpolate to --res by "
-        "splines. off: solve on all nodes. auto: in four-sided domains N = 257 for winslow if a "
-        "side has more than 512 nodes, and N = 129 for variational if a side has more than 257; else, and "
-        "with --tol, --max-cycles or --initial, off.",
+        "splines. off: solve on all nodes. auto: off with --tol, --max-cycles or --initial; in four-sided "
+        "domains N = 257 for winslow if a side has more than 512 nodes, and N = 129 for variational if a "
+        "side has more than 257; otherwise off.",
     ),
     refine: o.Refine = 0,
     initial: str | None = _option(

@@ -22,7 +22,7 @@ _layer = o.option_of(o.BOUNDARY_LAYER)
 # fmt: off
 @dataclass(frozen=True, kw_only=True)
 class VolumeFiles(Files):
-    """Options for output files of volumes; all inputs have one format, for which there is no option."""
+    """Options for the output files of volumes. The input is always TOML, so it needs no option."""
 
     output: o.Output
     to_format: o.To = None

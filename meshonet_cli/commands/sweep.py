@@ -31,8 +31,8 @@ class SectionFiles(Files):
 def sweep(
     names: Annotated[list[str], typer.Argument(
         metavar="OUTLINE... [PATH]", show_default=False,
-        help="Cross-sections, each swept to a grid of its own: circle:RADIUS or a file with a closed curve, "
-        "a domain, a layout or a planar grid. Without --revolve the last argument is the path: a TOML file "
+        help="Cross-sections: circle:RADIUS or a file with a closed curve, a domain, a layout or a planar "
+        "grid. Each becomes a grid of its own. Without --revolve the last argument is the path: a TOML file "
         "with lines and arcs, or a file with one point x y z per line.",
     )],
     run: o.RunOptions,

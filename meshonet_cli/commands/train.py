@@ -98,8 +98,8 @@ def train(
         metavar="DATASET", show_default=False,
         help="An .h5 file with grids of one family, made by solve-pde. --model strip needs boundaries of O "
         "grids instead, e.g. from sample-boundary --family procedural. --model quad needs two datasets of "
-        "the same domains with 33x33 nodes (65x33 around bodies): one of Winslow's grids, one of variational "
-        "grids. --model meshnet also accepts volumes.",
+        "the same domains with 33x33 nodes (65x33 around bodies): one made by winslow, one by variational. "
+        "--model meshnet also accepts volumes.",
     )],
     output: Annotated[str, _output(
         "-o", "--output", metavar="FILE", help="Model file to write, .safetensors.",

@@ -54,7 +54,7 @@ Refine = Annotated[int, option_of(METHOD)(
 
 
 def polish_steps(text: str) -> Literal["off"] | int:
-    """Return the value of ``--polish``, except ``auto``. Raises InputError: other text.
+    """Return the value of ``--polish``, ``off`` or a number. Raises InputError: other text.
 
     >>> polish_steps("off"), polish_steps("3")
     ('off', 3)

@@ -34,9 +34,9 @@ def option_of(group: str) -> Callable[..., Any]:
 
 
 def expanded(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function with one parameter for each field of the dataclass parameters of `function`.
+    """Return `function` with single options as parameters, in place of dataclasses that group options.
 
-    `function` itself receives each group of options as one object::
+    The given `function` has, for each group, one parameter, whose annotation is the dataclass::
 
         def tfi(boundary: Boundaries, grids: GridOptions, sides: SideOptions): ...
     """

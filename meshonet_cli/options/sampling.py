@@ -99,7 +99,7 @@ class SamplingOptions:
     )
 
     def placed(self, layers: "Mapping[str, Any] | None" = None) -> "Sampling":
-        """Return these options and `layers` together as `Sampling`. Raises InputError: an invalid value."""
+        """Return these options as `Sampling`. `layers`, options of boundary layers, can set `nj`."""
         from meshonet.geometry.spacing.sampling import Sampling
         from meshonet.solvers.pipeline.uses import counted
 

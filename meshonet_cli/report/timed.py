@@ -31,7 +31,7 @@ class Timed:
         return ""
 
     def row(self) -> MemberRow | None:
-        """Return the row of this member for the table of verdicts; None if it was not judged."""
+        """Return the row of this grid in the table of a batch; None if its quality was not judged."""
         return None
 
     @property
@@ -54,7 +54,7 @@ class Timed:
         return self.lines()
 
     def member_json(self) -> dict[str, Any]:
-        """Return the input, the name and the output file of the member for JSON."""
+        """Return the input, the name and the output file of this grid or boundary, for ``--json``."""
         return {"input": self.item.source, "name": self.item.name, "output": self.output}
 
     @property

@@ -25,7 +25,7 @@ EDGE_NODES = 1000
 def write_boundaries(batch: Batch, sampling: Sampling, sensors: int | None = None) -> int:
     """Place boundary nodes on the shapes of a batch, write the boundaries, and return the exit code.
 
-    Raises InputError if `sensors` are requested and the output cannot store them.
+    `sensors` nodes are also stored, as input of neural operators. Raises InputError if the output cannot.
     """
     files = batch.files
     drawn = isinstance(batch.inputs, DrawnInputs)

@@ -89,7 +89,7 @@ def write_grids(
 
     Parameters
     ----------
-    criteria : gates and profiles; if a grid fails them, the exit code is 1.
+    criteria : limits on quality; if a grid fails by one, the exit code is 1.
     history : CSV file to which solver cycles are written.
     assemble : whether all inputs together form one domain.
     """

@@ -31,7 +31,7 @@ VOLUME_NODES = 1_000_000
 def write_stacks(
     batch: Batch, parameters: Mapping[str, Any], criteria: Criteria | None, *, tip: Tip | None, surface: bool
 ) -> int:
-    """Make the volumes (or with `surface` the surfaces) of stacks, write them, and return the exit code."""
+    """Make volumes (with `surface`, surfaces) from stacked sections, write them, return the exit code."""
     chosen = shared(parameters, batch, criteria)
     if surface and criteria:
         raise InputError("{fail_on} and {profile} judge cells, and a surface has none", "leave them out")

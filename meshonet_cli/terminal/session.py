@@ -36,8 +36,7 @@ SAME_ERRORS = 3
 class Session:
     """Prints messages and keeps the largest exit code.
 
-    Tables and JSON go to standard output, all else to standard error. A terminal also shows a line of
-    progress.
+    Tables and JSON go to standard output, all else to standard error. A terminal also shows progress.
 
     Parameters
     ----------
@@ -82,7 +81,7 @@ class Session:
             self.fail(label, source or label, error, repeated=True)
 
     def fail(self, label: str, source: str, error: Exception, *, repeated: bool = False) -> None:
-        """Report a failed member; an error `repeated` for several is printed `SAME_ERRORS` times at most."""
+        """Report a failed input. With `repeated`, the same error is printed at most `SAME_ERRORS` times."""
         from meshonet_cli.terminal.summary import MemberRow
 
         if self._line and not self.batch:
@@ -187,7 +186,7 @@ class Session:
             self._draw()
 
     def watch(self) -> None:
-        """From one second on, show on a terminal which stage of a single input is in progress.
+        """If a single input takes over a second, show on a terminal which stage is in progress.
 
         Nothing is shown with JSON, or if standard output is a pipe.
         """
@@ -217,7 +216,7 @@ class Session:
         return self.live
 
     def skip(self, name: str, path: str, remark: str = "") -> None:
-        """Report a member that is skipped since its result exists."""
+        """Report an input that is skipped because its output file exists."""
         self.skipped += 1
         self.note(f"{name} -> {path}: there already{remark}")
 

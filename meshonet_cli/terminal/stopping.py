@@ -34,7 +34,7 @@ def hide_warnings() -> None:
 
 
 def check() -> None:
-    """Raise the exception of a received signal once more, in case Python dropped it."""
+    """Raise an exception if a signal such as Ctrl-C has arrived: Python can lose the handler's exception."""
     if _asked:
         raise _asked[-1]
 

@@ -68,17 +68,17 @@ class BodyMap:
         return _between(self.table, along, across) + at_body * (away * away)[:, None]
 
     def arcs(self, s: Floats) -> Floats:
-        """Return the arc lengths (n,) of the body's meridian, from the nose, at the coordinates `s` (n,)."""
+        """Return arc lengths (n,) along the body from the nose to places with the coordinate `s` (n,)."""
         along = s * ((_LINES - 1) / self.body.length)
         return np.clip(_between(self._arcs, along, np.zeros_like(s))[:, 0], 0.0, self.body.length)
 
     def around(self, places: Floats) -> Floats:
-        """Return the length in space (...) of a radian of theta at `places` (..., 3): s, theta, zeta."""
+        """Return distances (...) from the body's axis at `places` (..., 3), coordinates s, theta, zeta."""
         points = self.points(places)
         return np.hypot(points[..., 1] - self.body.y, points[..., 2])
 
     def steepness(self, places: Floats) -> Floats:
-        """Return angles (...) in radians between z and the body's cross-section, at `places` (..., 3)."""
+        """Return angles (...) in radians between z (spanwise) and tangents around the body at `places`."""
         return np.minimum(places[..., 1], np.pi - places[..., 1])
 
     def places(self, points: Floats, near: Floats | None = None) -> Floats:

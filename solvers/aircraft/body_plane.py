@@ -11,8 +11,7 @@
     theta = 0    +------+---------------+---------+--------+------+
     keel         s = 0                                    s = length
 
-All places are (s, theta). Collars are made in lengths in space, by the lengths of units of s and theta at the
-section.
+All places are (s, theta). For collars, both are scaled to lengths, by factors that hold at the section.
 """
 
 from collections.abc import Sequence
@@ -67,13 +66,13 @@ class LevelPlan:
 def planned(
     space: BodyMap, holes: Sequence[Sequence[Sequence[Hole]]], first: float, growth: float
 ) -> LevelPlan:
-    """Return numbers of cells that suit the sections of wings on all given surfaces around the body.
+    """Return the numbers of cells of surfaces around a body that have holes where wings cross them.
 
     Parameters
     ----------
     space : map around the body.
-    holes : sections of wings, indexed by column from nose to tail, by wing in the column, and by surface, the
-        body first. A column has one wing, or a wing and the fin above it.
+    holes : sections of wings, ``holes[column][wing][surface]``: columns from nose to tail, each with a wing,
+        a fin or both, and surfaces from the body outwards.
     first, growth : height of first cells, and largest growth ratio.
     """
     plans, levels = zip(*(planned_column(each, first, growth) for each in holes), strict=True)
@@ -132,10 +131,10 @@ def _level_with_fin(columns: Sequence[ColumnPlan], plans: Sequence[ColumnPlan]) 
 
 
 def level_patches(space: BodyMap, plan: LevelPlan, holes: Sequence[Sequence[Hole]]) -> list[Floats]:
-    """Return the patches of one grid level around a body, as coordinates s, theta, zeta (see `BodyMap`).
+    """Return the patches of one surface around a body, as coordinates s, theta, zeta (see `BodyMap`).
 
-    Each patch is (ni, nj, 3). `holes` are the sections of wings, which are left open. Patches around wings
-    come first, from nose to tail; then patches between wings, two at the nose and two at the tail.
+    Each patch is (ni, nj, 3). `holes` are the sections of wings, which are left open. The order of patches
+    is: around wings, from nose to tail; between wings; two at the nose; two at the tail.
     """
     levels = _beside_fins([ColumnLevel.of(*each) for each in zip(plan.columns, holes, strict=True)])
     patches = [patch for level in levels for patch in level.patches()]
@@ -170,7 +169,7 @@ def _from_tail(nodes: Floats, length: float) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class BodyEnd:
-    """The part of the grid of a surface around the body that covers its nose or tail."""
+    """Plan of two patches at the nose or the tail: a core around the tip, and rows of cells to a wing."""
 
     theta: Floats  # (n,) angles of the lines from the pole, the tip of nose or tail
     core: PoleCore  # block that covers the pole, in a plane with polar coordinates s, theta
@@ -180,10 +179,10 @@ class BodyEnd:
 
     @classmethod
     def of(cls, points: Points, sides: Sequence[Side]) -> Self:
-        """Return the part of the grid between the nose or the tail and the nearest wing.
+        """Return the plan of the patches between the tip of nose or tail and the nearest wing.
 
-        `sides` has the wing's nodes that face this part, level by level; the first level is the body. Their
-        coordinate s is measured from the tip of nose or tail.
+        `sides` has the nodes at which they end beside the wing, and cell lengths there, for each surface
+        around the body from the body on. s is measured from the tip. `points` maps nodes to x, y, z.
         """
         nodes, cells = sides[0]
         way, last = min((float(nodes[k, 0]), float(cells[k])) for k in (0, -1))
@@ -205,10 +204,10 @@ class BodyEnd:
         return begin, np.full(len(side), self.step)
 
     def patches(self, points: Points, side: Floats, last: Floats) -> tuple[Floats, Floats]:
-        """Return two patches (ni, nj, 3): rows that end at `side` (n, 3), and the core around the tip.
+        """Return two patches (ni, nj, 3): one that ends at the nodes `side` (n, 3), and one around the tip.
 
-        `last` (n,) are the lengths of the cells at the side. Nodes are s, theta, zeta: along, around and away
-        from the body, with s = 0 at the tip of nose or tail. `points` maps nodes to x, y, z.
+        `last` (n,) are the lengths of cells at the nodes `side`. Nodes are s, theta, zeta: along, around and
+        away from the body, with s = 0 at the tip of nose or tail. `points` maps nodes to x, y, z.
         """
         begin, first = self._begin(side)
         lines = lines_between(points, begin, side, (first, last), self.cells)

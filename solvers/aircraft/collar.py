@@ -38,7 +38,7 @@ Within: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 
 @dataclass(frozen=True)
 class Rectangle:
-    """Rectangle around the section of a wing: its limits along and around the body, as lengths in space."""
+    """Limits of a rectangle around a wing's section, along and around the body, in the unit of x, y, z."""
 
     front: float
     back: float
@@ -67,7 +67,7 @@ def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
     """Return the nodes of a wing's section from which lines lead to the corners of the rectangle `box`.
 
     The first number is the distance in nodes from the middle of the trailing edge, the second the distance
-    from the nose. Both are at least `fewest`. Cells on both sides of a corner then have similar lengths.
+    from the nose. Both are at least `fewest`, and make cells on both sides of a corner similarly long.
     """
     normals, half = _normals(root), (len(root) - 1) // 2
     tried = np.arange(fewest, half // 3 + 1)
@@ -96,7 +96,8 @@ def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]
 def outer_loop(root: Floats, box: Rectangle, corners: tuple[int, int]) -> Floats:
     """Return nodes (n, 2) on the rectangle `box`, one for each node of the section `root` (n, 2) in it.
 
-    `root` starts at the middle of the trailing edge, to larger theta. For `corners` see `corner_nodes`.
+    Coordinates are along and around the body. The first half of `root` runs from the middle of the trailing
+    edge along the upper side to the nose. For `corners` see `corner_nodes`.
     """
     half = (len(root) - 1) // 2
     edge, nose = corners
@@ -137,12 +138,12 @@ def collar(
 ) -> tuple[Floats, float]:
     """Return nodes (n, rows + 1, 2) between the closed loops `root` and `outer` (n, 2), and a sine.
 
-    The sine is that of the smallest angle of the grid before nodes are moved along its lines.
+    Nodes are placed on the lines of a simpler grid; the sine is that of the smallest angle of this grid.
 
     Parameters
     ----------
     first, last : lengths of cells at the root, and (n,) at the outer loop.
-    straight : shape of the lines: 0 elliptic, 1 parabolas normal to the root, in between a mixture.
+    straight : 0 for the lines of an elliptic grid, 1 for parabolas normal to the root, between: a mixture.
     """
     arcs, lines = _lines(root, outer, straight)
     wanted = _rows(arcs, rows, first, last)

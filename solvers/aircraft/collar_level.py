@@ -34,7 +34,7 @@ _SINE, _LINES = 0.15, 0.05  # smallest sines: in a collar, and between its lines
 
 @dataclass(frozen=True, eq=False)
 class Hole:
-    """The section of a wing on a level (a surface around the body)."""
+    """The section of a wing in a surface around the body (called a level)."""
 
     section: Floats  # (n, 2) s and theta of its nodes
     scale: Floats  # (2,) length in space of a unit of s, and of theta
@@ -45,17 +45,17 @@ class Hole:
 
     @cached_property
     def box(self) -> Rectangle:
-        """Rectangle around the section of the wing, in lengths in space."""
+        """Rectangle around the section, with sides along and around the body, in the unit of x, y, z."""
         return rectangle(self.section, self.within, self.scale)
 
     @property
     def plane(self) -> Floats:
-        """Coordinates s and theta (n, 2) of the section's nodes, scaled to lengths in space."""
+        """Nodes (n, 2) of the section: s and theta, scaled to lengths in the unit of x, y, z."""
         return self.section * self.scale
 
     @property
     def bands(self) -> tuple[float, float]:
-        """Lengths in space of the bands of cells below and above the collar (cells around the section)."""
+        """Widths, around the body, of the cells below and above the collar (cells around the section)."""
         bottom, top = (theta * float(self.scale[1]) for theta in (self.below, self.within[1][1]))
         if self.fin:
             top = self.box.high + self.box.low - bottom
@@ -80,7 +80,7 @@ class CollarPlan:
 
 
 def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
-    """Return both numbers that `corner_nodes` returns, as averages over `holes` (sections of wings)."""
+    """Return the two distances, in nodes, of `corner_nodes`, averaged over the sections `holes` of a wing."""
     corners = [corner_nodes(hole.plane, hole.box, _CORNER) for hole in holes]
     edge, nose = (round(sum(each) / len(corners)) for each in zip(*corners, strict=True))
     return edge, nose
@@ -117,7 +117,7 @@ def planned_collar(
 
 @dataclass(frozen=True, eq=False)
 class CollarLevel:
-    """The collar (cells around a wing's section) on a surface around the body, and sizes of nearby cells."""
+    """The collar, a grid around the section of a wing on one surface around the body."""
 
     # plan, hole: numbers of cells, and the section
     plan: CollarPlan
@@ -128,7 +128,7 @@ class CollarLevel:
 
     @classmethod
     def of(cls, plan: CollarPlan, hole: Hole) -> "CollarLevel":
-        """Return the collar around the section `hole`, with the numbers of cells in `plan`."""
+        """Return the collar (cells around a wing) of the section `hole`, with numbers of cells of `plan`."""
         plane, box = hole.plane, hole.box
         edge, nose, half = plan.edge, plan.nose, (len(plane) - 1) // 2
         outer = outer_loop(plane, box, (edge, nose))
@@ -166,7 +166,7 @@ class CollarLevel:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Lengths along s (`BodyMap`) of the first cells before and behind the section's rectangle."""
+        """Lengths in s, along the body, of the first cells before and behind the collar around the wing."""
         behind, before = outer_cells(self.hole.box, (self.plan.edge, self.plan.nose))
         unit = float(self.hole.scale[0])
         ahead, aft = (math.sqrt(a * b) for a, b in ((self.last[0], before), (self.last[3], behind)))
@@ -174,7 +174,7 @@ class CollarLevel:
 
     @cached_property
     def beside(self) -> tuple[float, float]:
-        """Lengths in space of the first cells below and above the rectangle around the wing."""
+        """Lengths of the first cells below and above the collar (cells around the wing), around the body."""
         outer, half = self.ring[:, -1, 1], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
         corners = (half + nose, len(outer) - 1 - edge), (half - nose, edge)
@@ -189,7 +189,7 @@ class CollarLevel:
 
     @cached_property
     def low_and_top(self) -> tuple[Floats, Floats]:
-        """Angles around the body of nodes below the rectangle around the wing, and of nodes above it."""
+        """Values of theta, ascending, of nodes below and of nodes above the collar (cells at the wing)."""
         out = []
         for cells, way, step in zip(
             (self.plan.low, self.plan.top), self.hole.bands, self.beside, strict=True
@@ -203,7 +203,7 @@ class CollarLevel:
 
     @property
     def across(self) -> tuple[Floats, Floats]:
-        """Ascending angles around the body, of nodes on the front and on the back of the rectangle."""
+        """Values of theta, ascending, of the collar's outermost nodes before and behind the wing."""
         outer, half, rho = self.ring[:, -1, 1], (len(self.ring) - 1) // 2, float(self.hole.scale[1])
         edge, nose = self.plan.edge, self.plan.nose
         front = outer[half + nose : half - nose - 1 : -1] / rho
@@ -216,13 +216,13 @@ class CollarLevel:
 
     @property
     def long_sides(self) -> tuple[Floats, Floats]:
-        """Positions along the body of nodes below, then above the wing, from back to front."""
+        """Values of s, from back to front, of the collar's outermost nodes below and above the wing."""
         s, half = self.ring[:, -1, 0] / self.hole.scale[0], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
         return s[half + nose : 2 * half - edge + 1][::-1], s[edge : half - nose + 1]
 
     def collar(self) -> Floats:
-        """Nodes (n, rows + 1, 2) around the wing, or around half a fin from nose to trailing edge."""
+        """Return nodes s, theta (n, rows + 1, 2) around the wing; only half of those around a fin."""
         ring = self.ring / self.hole.scale
         if not self.hole.fin:
             return ring

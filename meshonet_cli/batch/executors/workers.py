@@ -30,7 +30,7 @@ class EngineLostError(InputError):
 
 
 class Workers:
-    """Workers of an engine; base class of all engines.
+    """Processes that compute tasks; base class for processes here and on other machines.
 
     Parameters
     ----------
