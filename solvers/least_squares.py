@@ -25,8 +25,8 @@ class NormalEquations:
     Parameters
     ----------
     size : number n of unknowns, or of pairs of unknowns.
-    kinds : for each kind of residuals, the indices (k, m) of its unknowns; -1 marks a fixed value.
-    block : 2 if the indices count pairs of unknowns; derivatives are then (k, 2 m).
+    kinds : indices (k, m) of the m unknowns of k residuals, for each kind of residuals; -1: a fixed value.
+    block : 2 if an index means two unknowns, such as x and y; `Residuals.derivatives` are then (k, 2 m).
 
     >>> equations = NormalEquations(1, [np.array([[0], [0]])])
     >>> two = Residuals(np.array([[1.0], [1.0]]), np.ones(2), np.array([-1.0, -3.0]))

@@ -24,10 +24,11 @@ Shift: TypeAlias = tuple[Floats, Callable[[Floats], Floats]]
 
 
 class StripGrid:
-    """A grid in the strip (the conformal image of the domain), to be evaluated at its nodes.
+    """Nodes of a grid in the periodic strip onto which the domain around a body is mapped conformally.
 
-    Points of the strip are w = F + i theta. `c` (2 MODES + 1, LEVELS) are the Fourier modes of F at Chebyshev
-    points, `wall` and `far` (n,) F at the nodes of wall and far field. `eta` (nj,) ascends from 0 to 1.
+    They are complex numbers F + i theta. F depends on theta, which goes around the body, and on `eta` (nj,),
+    which ascends from 0 on the wall to 1. `c` (2 MODES + 1, LEVELS) are the Fourier modes of F at Chebyshev
+    points, `wall` and `far` (n,) its values at the nodes of wall and far field.
     """
 
     def __init__(self, c: Complexes, wall: Complexes, far: Complexes, eta: Floats) -> None:
@@ -52,11 +53,10 @@ class StripGrid:
         return np.asarray(F + 1j * theta)
 
     def fill(self, lift: Lift, out: Floats, axis: Axis | None = None, shift: Shift | None = None) -> bool:
-        """Map all inner nodes to the plane (`out`: (n + 1, nj, 2)); return whether the results are finite.
+        """Map nodes to the plane, as ``out[:, 1:-1]`` of `out` (n + 1, nj, 2); return whether all are finite.
 
-        `lift` maps the strip, in which the grid was computed, conformally to the plane. The last row repeats
-        the first bitwise. With an `axis`, rows i and n - i are mirror images. `shift` moves points of the
-        strip parallel to its walls.
+        `lift` maps the strip conformally to the plane. The last row repeats the first bitwise. With a mirror
+        `axis`, rows i and n - i are mirror images. `shift` moves points of the strip parallel to its walls.
         """
         n, (ends, points, matrix) = len(self.theta), self._panels
         begin, far = ends[0], self.eta[ends[-1] : -1]

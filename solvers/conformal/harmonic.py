@@ -15,8 +15,8 @@ FAR = 37.0  # exp(-37) is the precision of a double: modes that have decayed so 
 def extend(boundary: Boundary) -> Floats:
     """Return the nodes (ni, nj, 2) of the solution of Laplace's equation; boundary nodes are exact.
 
-    Each side contributes a series with the Fourier coefficients b_k or c_k of its nodes, written for eta = 0
-    on this side. a is height / length of a rectangle, T is log(outer length / inner length) of an annulus::
+    Each side contributes a series, here that of eta = 0. b_k are Fourier coefficients of its nodes minus the
+    line between its corners, c_k those of its nodes. a is height / length, T log(outer / inner length)::
 
         quad   bilinear in corners + sum over sides, k of b_k sin(k pi xi) sinh(k pi a (1-eta)) / sinh(k pi a)
         o      linear in wall means + sum over walls, k of c_k exp(2 pi i k xi) sinh(k T (1-eta)) / sinh(k T)

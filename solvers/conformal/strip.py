@@ -124,7 +124,7 @@ def harmonic(wall: Any, far: Any, eta: Floats, xp: Any = np) -> Any:
 
 
 def to_columns(c: Any, xp: Any = np) -> Any:
-    """Return samples, at `COLUMNS` equal steps of theta, of functions with the modes c (..., 2 MODES + 1)."""
+    """Return the sums (..., COLUMNS) of Fourier modes `c` (..., 2 MODES + 1) at equal steps of theta."""
     zeros = xp.zeros((*c.shape[:-1], COLUMNS - 2 * MODES - 1), dtype=c.dtype, device=c.device)
     return xp.fft.ifft(xp.concatenate([c[..., : MODES + 1], zeros, c[..., MODES + 1 :]], -1), norm="forward")
 
@@ -140,8 +140,8 @@ def picard(
 ) -> tuple[Complexes, list[float]]:
     """Return the modes of F after at most `steps` Picard steps, and the largest change of F in each step.
 
-    A grid in the strip is w(theta, eta) = psi + i phi; F = w - i theta has the period 2 pi in theta. With
-    derivatives by t = theta and e = eta, the grid solves::
+    Nodes in the strip are complex numbers w, with the real part across the strip and the imaginary part along
+    it. F = w - i theta has the period 2 pi in theta. With derivatives by t = theta and e = eta, w solves::
 
         alpha w_tt - 2 beta w_te + gamma w_ee = 0
         alpha = |w_e|^2,  beta = Re(conj(w_t) w_e),  gamma = |w_t|^2

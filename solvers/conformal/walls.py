@@ -50,10 +50,9 @@ def walls(boundary: Boundary) -> StripWalls:
 def is_rough(body: StripWalls) -> bool:
     """Return whether Fourier modes hardly resolve the uneven spacing of the wall, so that cells may fold.
 
-    The criterion is the sum of the amplitudes of modes beyond `MODES` / 2, in radians. It is at most 0.013
-    for airfoils, or 0.06 if nodes are evenly spaced around the leading edge. For polygons it is at least
-    0.02, for a square far field at least 0.01. Raises InputError if the modes do not resolve the wall or the
-    far field.
+    The criterion is the sum of the amplitudes, in radians, of the highest Fourier modes of the wall in the
+    strip. Airfoils are rough from `SHARPEST` to `ROUGHEST`, for example with evenly spaced nodes around the
+    leading edge. Raises InputError for larger sums, and for other bodies or far fields above `SHARPEST`.
     """
     n = len(body.wall)
     k = np.minimum(np.arange(n), n - np.arange(n))

@@ -38,22 +38,22 @@ class Field:
 
     @classmethod
     def of(cls, nodes: Floats, sources: Indices, areas: Floats, near: float, points: Indices) -> Self:
-        """Return the field of `sources` (k,) at `points` (m,), both given as indices into `nodes` (n, d).
+        """Return the field by which the nodes with indices `points` (m,) follow the nodes `sources` (k,).
 
-        `areas` (n,) are the lengths or areas that belong to the nodes; `near` is as in `Field`.
+        `areas` (n,) are the lengths or areas that belong to the `nodes` (n, d); `near` is as in `Field`.
         """
         places = np.ascontiguousarray(nodes[sources].T)
         where = np.ascontiguousarray(nodes[points].T)
         return cls(sources, places, np.ascontiguousarray(areas[sources]), near, where)
 
     def blended(self, motions: Floats) -> Floats:
-        """Return the displacements (m, d) of the field's `points`; `motions` is the result of `affine`."""
+        """Return the displacements (m, d) of `points`; source k moves by ``motions[:, k]`` (see `affine`)."""
         moved = np.empty_like(self.points)
         blend_motions(self.places, self.areas, motions, self.near, self.points, thread_count(), moved)
         return moved.T
 
     def transposed(self, pull: Floats) -> Floats:
-        """Return the gradient (6, k), by planar motions, of the sum of displacements times `pull` (m, 2)."""
+        """Return the derivatives of the sum of `pull` (m, 2) * ``blended(motions)`` by `motions` (6, k)."""
         gathered = np.empty((6, len(self.areas)))
         force = np.ascontiguousarray(pull.T)
         blend_transposed(self.places, self.areas, self.near, self.points, force, gathered)
@@ -73,7 +73,7 @@ class Follow:
 
     @classmethod
     def of(cls, table: NodeTable, moved: Bools) -> Self:
-        """Return the map for the nodes `table`; `moved` (n,) marks boundary nodes with new positions."""
+        """Return the map by which the nodes of `table` follow moved boundary nodes (mask `moved` (n,))."""
         nodes, sources = table.nodes, sources_of(table, moved)
         near = _near(nodes[moved], nodes[sources.fixed])
         held = np.union1d(np.flatnonzero(moved), sources.fixed)
@@ -86,13 +86,13 @@ class Follow:
         return cls(table, sources, turning, slide, field, inner)
 
     def nodes_to(self, to: Floats) -> Floats:
-        """Return the new positions (n, d) of all nodes; `to` (n, d) has the new positions of moved nodes."""
+        """Return the new positions (n, d) of all nodes; only the rows of `to` (n, d) of moved nodes count."""
         there = self.boundary_to(to)
         there[self.inner] += self.field.blended(self._motions(self.field, there))
         return there
 
     def boundary_to(self, to: Floats) -> Floats:
-        """Return the nodes (n, d) after boundary nodes have moved; `to` (n, d) has the given positions."""
+        """Return the nodes (n, d) with new positions on the boundary only; `to` is as in `nodes_to`."""
         nodes = self.table.nodes
         there = np.where(self.sources.moved[:, None], to, nodes)
         if self.slide is not None:
@@ -110,7 +110,7 @@ class Follow:
         return affine(old[at], there[at], turns)
 
     def along_sides(self, move: Floats, there: Floats) -> Floats:
-        """Make displacements `move` (n, d) tangential to sliding sides that are flat, and return them."""
+        """Make displacements `move` (n, d) tangential to sliding sides that are flat, now and at `there`."""
         for piece in self.sources.sliding:
             normal = normal_of(self.table, piece, there)
             if normal is not None:
@@ -140,7 +140,7 @@ def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
 
 
 def sliding_notes(follow: Follow, to: Floats) -> tuple[str, ...]:
-    """Return notes on sides whose nodes slide or follow beside a moved wall. `to` (n, d): new positions."""
+    """Return notes on sides whose nodes slide since the wall beside them moves; `to` (n, d): moved nodes."""
     notes, table = [], follow.table
     for piece in follow.sources.sliding:
         if (to[piece.numbers] == table.nodes[piece.numbers]).all():

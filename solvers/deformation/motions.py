@@ -25,7 +25,7 @@ class Turning:
 
     @classmethod
     def of(cls, nodes: Floats, edges: Indices) -> Self:
-        """Return the weights for the wall `edges` (m, 2), pairs of indices into `nodes` (n, 2)."""
+        """Return a wall's edges, weighted by inverse lengths; `edges` (m, 2) are indices into `nodes`."""
         nearness = 1.0 / np.maximum(norms(nodes[edges[:, 1]] - nodes[edges[:, 0]]), 1e-300)
         total = np.bincount(edges.ravel(), np.repeat(nearness, 2), len(nodes))
         return cls(edges, nearness[:, None] / total[edges])
@@ -40,7 +40,7 @@ class Turning:
         return np.bincount(self.edges.ravel(), shares, n).astype(np.float64, copy=False)
 
     def angles_along(self, new: Floats, moves: Floats) -> Floats:
-        """Return the derivatives (n,) of `angles` with respect to nodes `new` (n, 2) moved along `moves`."""
+        """Return the directional derivative (n,) of `angles` at nodes `new` (n, 2) along `moves` (n, 2)."""
         slope, way = self._slopes(new), moves[self.edges[:, 1]] - moves[self.edges[:, 0]]
         return self._at_nodes((slope * way).sum(axis=1), len(new))
 
@@ -59,13 +59,13 @@ class Turning:
 
 
 def turns_in_plane(angles: Floats) -> Floats:
-    """Return R - 1 (n, 2, 2) for the rotation matrices R of `angles` (n,), accurate for small angles too."""
+    """Return R - I (n, 2, 2) for the rotation matrices R of `angles` (n,), accurate for small angles too."""
     sine, less = sin(angles), -2.0 * sin(0.5 * angles) ** 2
     return np.stack([np.stack([less, -sine], axis=-1), np.stack([sine, less], axis=-1)], axis=-2)
 
 
 def turns_in_space(quads: Indices, old: Floats, new: Floats) -> Floats:
-    """Return R - 1 (n, 3, 3), where R rotates the quads around each node from `old` to `new` nodes (n, 3)."""
+    """Return R - I (n, 3, 3), with the mean rotation R of a node's quads from `old` to `new` nodes (n, 3)."""
     before, after = _frames(old[quads]), _frames(new[quads])
     whole = product(after, inverse(before))
     total = np.zeros((len(old), 3, 3))
@@ -86,10 +86,10 @@ def _frames(corners: Floats) -> Floats:
 
 
 def affine(places: Floats, moved: Floats, turns: Floats) -> Floats:
-    """Return the motion x -> a + B x of each node, as an array (d + d², n): a vector a, then a matrix B.
+    """Return for each node the displacement a + B x of points x that move with it, as an array (d + d², n).
 
-    `places` and `moved` (n, d) are the old and new positions of the nodes, `turns` (n, d, d) their rotation
-    matrices minus the identity.
+    A column has the vector a, then the rows of the matrix B. `places` and `moved` (n, d) are the old and new
+    positions of the nodes, `turns` (n, d, d) their rotation matrices minus the identity.
     """
     shift = moved - places - product(turns, places[:, :, None])[:, :, 0]
     return np.ascontiguousarray(np.concatenate([shift.T, turns.reshape(len(places), -1).T]))

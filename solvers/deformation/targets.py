@@ -45,9 +45,9 @@ class NodeTargets:
 def targets_of(table: NodeTable, walls: Mapping[str, NewWall] | NewWall) -> NodeTargets:
     """Return the new positions of the nodes of walls.
 
-    `walls` has the new shape of each wall by name, or a single shape if there is one wall. A shape that is a
-    grid or a boundary moves all walls that have the names of its patches. Raises InputError if the grid has
-    no wall of a given name, or if a new shape is unsuitable.
+    `walls` has the new shape of each wall by name. A single shape is that of the only wall; a single grid or
+    boundary moves every wall that has the name of one of its patches. Raises InputError if the grid has no
+    wall of a given name, or if a new shape is unsuitable.
     """
     moved, nodes = np.zeros(len(table.nodes), dtype=bool), table.nodes.copy()
     notes: list[str] = []

@@ -62,7 +62,7 @@ class DeformationDerivative:
         """Return the derivative (n, 2) of a functional with respect to the nodes of each moved wall.
 
         `pulls` has an array (ni, nj, 2) for each block: the derivative of the functional with respect to the
-        nodes, as if all moved independently. A closed wall repeats its first node, with the derivative 0.
+        nodes, as if all moved independently. The result is 0 where the last node of a wall repeats the first.
         """
         arrays = [pulls] if isinstance(pulls, np.ndarray) else list(pulls)
         if [a.shape[:2] for a in arrays] != [block.counts for block in self.grid.blocks]:

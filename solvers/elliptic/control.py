@@ -26,11 +26,11 @@ class Factors:
         return cls(np.zeros((0, ni)), np.zeros((0, nj)))
 
     def values(self) -> Floats:
-        """Return the values of the sum at all nodes (ni, nj)."""
+        """Return the values (ni, nj) of the function at all nodes."""
         return np.asarray(product(self.along.T, self.across))
 
     def kept(self, i: Indices, j: Indices) -> Factors:
-        """Return the function at the nodes whose first index is in `i` and whose second index is in `j`."""
+        """Return this function of the nodes, restricted to nodes with first index in `i`, second in `j`."""
         return Factors(np.ascontiguousarray(self.along[:, i]), np.ascontiguousarray(self.across[:, j]))
 
     def scaled(self, part: float) -> Factors:

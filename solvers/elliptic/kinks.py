@@ -24,7 +24,7 @@ def sweep_kinks(
 ) -> bool:
     """Relax planar `nodes` in place around the kinks of the boundary; return whether there are any.
 
-    `nodes` must come from splines through a coarse grid of `counts` nodes, which are too smooth at kinks.
+    `nodes` must come from splines through a coarser grid of `counts` nodes; splines are too smooth at kinks.
     With `only_better`, the nodes around a kink move only if the largest angle becomes smaller.
     """
     any_kinks = False

@@ -85,12 +85,12 @@ class Multigrid:
         interpolate(level.x, level.y, self._edges[k], self._along[k])
 
     def residual(self, k: int = 0) -> float:
-        """Return the root mean square of the residual on level `k`, for a right-hand side of 0."""
+        """Return the root mean square residual of Winslow's equations on level `k` (right-hand side 0)."""
         level = self.levels[k]
         return float(np.sqrt(level.residual(False) / level.x.size))
 
     def nested_iteration(self) -> float:
-        """Fill the finest level from coarser levels; return the residual of its transfinite interpolation."""
+        """Solve from coarse to fine; return the finest level's residual for transfinite interpolation."""
         last = len(self.levels) - 1
         self.interpolate_edges(last)
         start = self.residual(last)

@@ -39,8 +39,8 @@ def solve_steger_sorenson(
 ) -> Solution:  # fmt: skip
     """Solve Winslow's equations with sources that control angles and first-cell heights at edges.
 
-    Sources can make first cells only somewhat thinner. Notes state the remaining error of the angles, and
-    whether sources were weakened because cells folded.
+    First cells are at least about half as high as without sources. Notes state the remaining error of the
+    angles, and whether sources were weakened because cells folded.
 
     Parameters
     ----------

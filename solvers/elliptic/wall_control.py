@@ -23,9 +23,9 @@ class ControlledEdge:
     """An edge (n, 2) at which sources control angles and first-cell heights.
 
     On line i, the sources at node j from the edge are p(i) e^{-b j} along the edge and q(i) e^{-b j} across
-    it, with a constant b. On a uniform grid with steps dx and dy, a Fourier mode of p with wave number κ/dy
-    rotates lines by (dy/dx) p/(b + κ). Such a mode of q changes the logarithm of the height by q/(b + κ). A
-    correction is therefore the error, with each Fourier mode multiplied by b + κ.
+    it, with a constant b. On a uniform grid with steps dx along the edge and dy across it, a Fourier mode of
+    p with wave number k rotates lines by (dy/dx) p/(b + k dy). Such a mode of q changes the logarithm of the
+    height by q/(b + k dy). A correction is therefore the error, with each mode multiplied by b + k dy.
 
     `across` is the number of nodes to the opposite edge. `periodic` means a closed edge. `angle` is the angle
     between edge and lines in degrees. `height` is the first-cell height, 0 if not controlled.

@@ -32,11 +32,11 @@ def descend(
     nodes: Floats, weights: Weights, still: float, most: int, *, periodic: bool = False,
     first: int | None = None, stiffness: tuple[Stiffness, tuple[int, int]] | None = None,
 ) -> tuple[int, bool]:  # fmt: skip
-    """Minimise the functional from planar `nodes` (ni, nj, 2), in place; folded cells are repaired first.
+    """Minimise the variational functional from planar `nodes` (ni, nj, 2), in place; unfold cells first.
 
     Returns the number of iterations, and whether no cell is folded. `still` is the tolerance `tol` of
-    `variational.solve`. At most `most` iterations are made; they end after `first` iterations unless the
-    functional is above `HARD`. If `periodic`, the grid is around a body, and its last row repeats the first.
+    `variational.solve`. The minimisation ends after `most` iterations, or after `first` if the functional is
+    then at most `HARD`. If `periodic`, the grid is around a body, and ``nodes[-1]`` repeats ``nodes[0]``.
     `stiffness`, a result of `stiffness_of`, is used as a preconditioner.
     """
     ni, nj = nodes.shape[:2]
@@ -95,7 +95,7 @@ def listener_of(nodes: Floats) -> Callable[[int, float, float], None] | None:
 
 
 def in_cells(still: float, nodes: Floats) -> float:
-    """Return a tolerance in cell sizes: `still` times √cells of the planar `nodes` (ni, nj, 2)."""
+    """Return the tolerance `still` √N in cell sizes, with the number N of cells of `nodes` (ni, nj, 2)."""
     return still * float(np.sqrt((nodes.shape[0] - 1) * (nodes.shape[1] - 1)))
 
 
@@ -108,10 +108,10 @@ def _made_valid(nodes: Floats, weights: Weights, periodic: bool) -> bool:
 
 
 def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floats) -> None:
-    """Unfold and optimise planar `nodes` (ni, nj, 2) of an O grid around skewed cells, in place.
+    """In an O grid `nodes` (ni, nj, 2), unfold and optimise skewed cells and the cells near them, in place.
 
-    Such cells arise where splines have smoothed grid lines that leave corners of the wall. `relief` is the
-    result of `relief_of`.
+    Cells are skewed where splines have smoothed grid lines that leave corners of the wall. `aspect` and
+    `relief` are the results of `aspect_of` and `relief_of` for the grid.
     """
     skewed = corner_distortion(nodes)
     poor = np.argwhere(skewed > SKEWED)

@@ -19,15 +19,16 @@ class Weights:
     """Weights w and β of the functional E.
 
     u and v are the edges along xi and eta at a corner of a cell, or their means at its centre. Then g = |u|²,
-    h = |v|² and J = u × v. a is the aspect ratio, and l is the length of an edge along xi or along eta::
+    h = |v|² and J = u × v. a is the aspect ratio (`aspect_of`). Δ is the difference of neighbouring edges::
 
         T = (1-w) (a g + h/a) / (2J) + w (g h / J²)²
+        S = mean over cells of ((ni-1) Δ_i log l)² + ((nj-1) Δ_j log l)²,  with lengths l of edges
         E = mean over cells of (mean of T at corners + 2 T at the centre) / 3
-          + β mean over cells of the squares of (ni-1) Δ_i log l and (nj-1) Δ_j log l, for both l
+          + β (S of the edges along xi + S of the edges along eta)
 
     The first term of T is the discrete harmonic functional, which is infinite at J = 0. The second is 1/sin⁴
-    of the angle. The term with β is the squared gradient of log l, which prevents alternately narrow and wide
-    cells. For folded grids, J is replaced by χ = (J + √(J² + ε²)) / 2 > 0.
+    of the angle. S is the squared gradient of log l, which prevents alternately narrow and wide cells. While
+    cells are folded, J is replaced by χ = (J + √(J² + ε²)) / 2 > 0, with an area ε that is reduced gradually.
     """
 
     shape: float = 0.97  # w, from 0 (harmonic) to 1 (angles only)
@@ -52,8 +53,8 @@ def value(nodes: Floats, weights: Weights) -> float:
 def relief_of(wall: Floats) -> Floats:
     """Return factors (ni,) for the angle terms of the functional E at the nodes of a closed `wall` (ni, 2).
 
-    The factor is 1. Where the angle of the domain exceeds 320 degrees, as at a sharp trailing edge, it is
-    sin⁴ of half this angle. The least possible value of the term is then the same as for right angles.
+    Where the angle of the domain exceeds 320 degrees, as at a sharp trailing edge, the factor is sin⁴ of half
+    this angle. The least possible value of the term is then the same as for right angles. Elsewhere it is 1.
     """
     half = 0.5 * (np.pi - turning(wall[:-1], closed=True))
     share = np.where(half > 8.0 / 9.0 * np.pi, (np.maximum(sin(half), 1e-3) ** 2) ** 2, 1.0)
@@ -61,10 +62,10 @@ def relief_of(wall: Floats) -> Floats:
 
 
 def aspect_of(nodes: Floats, periodic: bool = False) -> float:
-    """Return the aspect ratio a of the functional: the ratio of steps along eta to steps along xi.
+    """Return the aspect ratio a of the variational functional: of steps along eta to steps along xi.
 
-    It compares root mean square steps on west and east with steps on south and north. If `periodic`, west
-    and east are no boundaries, and a is the ratio that minimises the harmonic term.
+    It compares root mean square steps on west and east with those on south and north. If `periodic`, west and
+    east are no boundaries; a then minimises the mean of (a |u|² + |v|²/a) / |J|, with edges u, v and area J.
     """
     if periodic:
         u, v = np.diff(nodes, axis=0)[:, :-1], np.diff(nodes, axis=1)[:-1]

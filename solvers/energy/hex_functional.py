@@ -10,24 +10,24 @@ from typing import Literal
 
 @dataclass(frozen=True)
 class HexWeights:
-    """Weights of a functional of hexahedra: `shape` q, `smoothness` β, `power` p (1 or 2; 0 selects cubes).
+    """Weights of the functional of angles for hexahedra, or, if `power` is 0, of the functional of cubes.
 
     u, v, w are the edges at a corner of a cell, each divided by its target length, and J = det(u, v, w). l
-    are the lengths of all edges along one of the three index directions. Δ_e is the difference of neighbours
-    in direction e, and N the number of cells. The functional of angles is::
+    are the lengths of all edges along one of the three index directions, divided by target lengths. Δ_e is
+    the difference of neighbours in direction e, N the number of cells, q `shape`, β `smoothness` and p
+    `power`. The functional of angles is::
 
         E = mean over the corners of cells of
                 (1-q) (|u × v|² + |v × w|² + |w × u|²) / (3J) + q (|u|² |v|² |w|² / J²)^p
           + β mean of the squares of N^(1/3) Δ_e log l, for all three l, along all three directions e
 
-    Inside six faces, target lengths are the mean lengths along each direction. In given blocks they are near
-    the given lengths. The functional of cubes has q = 1 and β = 0. T is the Jacobian matrix of a cell's
-    trilinear map, divided by a length of the cell::
+    Target lengths of a new grid inside six faces are the mean lengths along each direction, those of a given
+    grid its own lengths, smoothed. The functional of cubes, with the Jacobian matrix T of a cell's map, is::
 
         E = mean over cells of the integral of |T|² / (3 det(T)^⅔)
 
-    For folded grids, J is replaced by χ = (J + √(J² + ε²)) / 2 > 0. A minimisation ends after two consecutive
-    steps, each of which lowers the value by less than the fraction `gain`.
+    While cells are folded, J is replaced by χ = (J + √(J² + ε²)) / 2 > 0. A minimisation ends after two
+    consecutive steps, each of which lowers the value by less than the fraction `gain`.
     """
 
     shape: float = 0.9

@@ -25,7 +25,7 @@ without an edge are arbitrary.
 
 @dataclass(frozen=True, eq=False)
 class HexTables:
-    """Tables of all blocks of a mesh for compiled code."""
+    """A hexahedral mesh as flat arrays over the positions (i, j, k) of all blocks, for compiled code."""
 
     blocks: NDArray[np.int64]  # (b, 6) node counts, and starts of positions, cells and rows
     node: NDArray[np.int32]  # (p,) index of the node at each position, -1 for none
@@ -41,9 +41,9 @@ class HexTables:
 def tables_of(
     mesh: HexMesh, moves: Bools, targets: Targets, lengths: Sequence[Floats], turned: bool = True
 ) -> HexTables:
-    """Return the tables of a mesh for compiled code; `moves` (n,) is the mask of free nodes.
+    """Return the arrays of a mesh for the compiled minimisation, which moves the nodes in the mask `moves`.
 
-    `lengths` are target lengths of cells. If `turned`, each block's longest direction becomes its last one.
+    `lengths` are target lengths of each block's cells. If `turned`, its longest direction becomes the last.
     """
     parts = [
         _part(wider, np.append(moves, False), wanted, sizes, turned)

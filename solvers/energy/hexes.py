@@ -71,7 +71,7 @@ class HexOptimum:
 
 
 class HexProblem:
-    """Minimisation of the functional over the nodes of a mesh in the mask `moves` (n,)."""
+    """Minimisation of the functional of `HexWeights`; only the nodes in the mask `moves` (n,) move."""
 
     def __init__(self, mesh: HexMesh, moves: Bools, targets: Targets, slides: Slides | None = None) -> None:
         self.mesh, self.moves, self.iterations = mesh, moves, 0
@@ -102,7 +102,7 @@ class HexProblem:
         return self.descent.smallest()
 
     def unfold(self, smallest: float, rounds: int = ROUNDS, iterations: int = ROUND) -> float:
-        """Untangle the mesh by the regularised functional; return the smallest Jacobian."""
+        """Untangle cells by up to `rounds` minimisations; return the `smallest` Jacobian afterwards."""
         best, idle = smallest, 0
         for count in range(rounds):
             if smallest > 0.0 or idle == WITHOUT_GAIN:

@@ -20,10 +20,10 @@ MODES = 512  # modes along a direction that are kept; finer ones are all divided
 
 
 class Descent:
-    """Minimisation of the functional over planar nodes (ni, nj, 2), in place; boundary nodes are fixed.
+    """Minimisation of the variational functional over planar `nodes` (ni, nj, 2), in place.
 
-    In a `periodic` grid, which is around a body, the last row repeats the first, and both move. `aspect` is
-    the aspect ratio a of the functional; None computes it from `nodes`.
+    Boundary nodes are fixed. In a `periodic` grid, around a body, ``nodes[-1]`` repeats ``nodes[0]`` and both
+    move. `aspect` is the result of `aspect_of` for the grid; None computes it from `nodes`.
     """
 
     def __init__(
@@ -40,15 +40,15 @@ class Descent:
     ) -> tuple[float, float, int]:  # fmt: skip
         """Minimise; return the functional, the smallest corner Jacobian and the number of iterations.
 
-        The iteration ends if nodes move by less than `still` cell sizes, or after `most` iterations.
-        `epsilon` (an area) regularises Jacobians. `relief` is the result of `relief_of`. `listener` gets the
-        number of the iteration, value and gradient norm, before the first and after each iteration.
+        The iteration ends if nodes move by less than `still` cell sizes, or after `most` iterations. The area
+        `epsilon` regularises Jacobians. `relief` (ni,) are factors of angle terms at the wall (`relief_of`).
+        `listener` gets the number, value and gradient norm, before the first and after each iteration.
         """
         return self.minimiser.run(self._z, *self._terms, epsilon, relief, still, REACH_CELLS, most, listener)
 
 
 def minimiser(ni: int, nj: int, periodic: bool, aspect: float, weights: Weights) -> VariationalDescent:
-    """Return the compiled minimisation for ni x nj nodes; if `periodic`, the last row repeats the first."""
+    """Return the compiled minimisation of the variational functional over ni x nj nodes, for `Descent`."""
     rows, along = _fourier(ni - 1) if periodic else _sines(ni - 1)
     columns, across = _sines(nj - 1)
     along, across = along[:, None] * aspect, across[None] / aspect

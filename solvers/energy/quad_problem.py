@@ -50,7 +50,7 @@ def smallest_jacobian(nodes: Floats, quads: Indices, areas: Floats | None = None
 
 
 class Problem:
-    """Minimisation of the functional over the nodes of a quadrilateral mesh."""
+    """Minimisation of a functional of cell shapes and edge lengths over the nodes of a quadrilateral mesh."""
 
     cell: float  # mean area of a cell in scaled units
     descent: QuadDescent

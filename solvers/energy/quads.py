@@ -21,7 +21,7 @@ SIZED = 0.97, 2e-4
 UNFOLDING = 0.0, 0.3  # w, and the weight of areas, while folded: angles would hold on to folds
 ROUNDS = 14  # regularisations at the most
 FIRST_ROUND, PER_ROUND = 80, 40  # iterations with the first, and with each other
-GAIN = 1e-5  # relative, in three iterations in a row, below which a round ends
+GAIN = 1e-5  # relative, in two iterations in a row, below which a round ends
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,9 +51,9 @@ def optimise(
     held : (n,) mask of fixed nodes; corners (`Places.cells` > 0) are fixed anyway.
     aspects : (m,) for each cell, target length of its sides 1-2 and 0-3 divided by that of sides 0-1 and 3-2.
     targets : (e,) target lengths of `mesh.edges` in any unit, because only ratios of neighbours matter.
-    tolerance : the iteration ends after three consecutive relative gains below a hundredth of this.
+    tolerance : the iteration ends after two consecutive relative gains below a hundredth of this.
     turning : angle in radians by which a wall may turn along one edge without penalty.
-    weights : of angles and of smoothness, if there are `targets` or a penalty for growth.
+    weights : weights of angles and of smoothness. They are ignored without `targets` or a penalty for growth.
     growth : weight of a penalty for growth ratios, and the logarithm of the largest ratio without penalty.
     """
     problem = problem_of(mesh, held, aspects, targets, turning)

@@ -34,10 +34,10 @@ class Walls:
 
 
 def walls_of(mesh: QuadMesh, fixed: Bools, tied: Bools) -> Walls | None:
-    """Return the walls of a mesh, with nodes in order along each wall; None if fixed nodes are not in order.
+    """Return the walls of a mesh, with arc lengths of nodes that increase from edge to edge along each wall.
 
     `fixed` (n,) is the mask of fixed nodes. `tied` (n,) is the mask of nodes on periodic sides, which are no
-    walls. Other nodes that are not in order are moved along their wall.
+    walls. Nodes that are not fixed are moved if necessary. Returns None if fixed nodes prevent an increase.
     """
     places = mesh.places
     on = (places.loop >= 0) & ~tied

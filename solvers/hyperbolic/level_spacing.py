@@ -22,7 +22,7 @@ _LEAST_TURN = math.radians(60.0)  # of an edge that counts as sharp
 
 
 class Edge(NamedTuple):
-    """A sharp edge of a wall: size of the cells next to it, and sharpness from 0 to 1."""
+    """A sharp corner of a wall: length of the cells next to it, and 1 - cos(half its turning angle)."""
 
     size: float
     sharpness: float
@@ -48,7 +48,7 @@ def fastest(nodes: Floats) -> Floats:
 
 
 def even_shares(nodes: Floats, steps: Floats, rate: float, constant: int) -> Floats:
-    """Return weights (n,) for `level_steps` that make the greatest growth ratio equal at all levels.
+    """Return `shares` (n,) for `level_steps` with which the greatest growth ratio on each level is the same.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def level_steps(
     ----------
     constant : number of equal steps at the wall; all further steps grow by one ratio.
     edge : sharp edge of the wall, or None; steps grow less where grid lines diverge from this edge.
-    shares : (cells,) weights of the logarithms of growth ratios, in place of `constant` and `edge`.
+    shares : (cells,) logarithms of growth ratios, up to a factor, in place of `constant` and `edge`.
 
     >>> level_steps(1.0, 9.0, 5, 3, None).tolist()
     [1.0, 1.0, 1.0, 2.0, 4.0]

@@ -62,7 +62,7 @@ class Measures:
     slack: Floats | float = 1.0
 
     def at(self, places: Floats, closed: bool) -> Floats:
-        """Return the values (k, n) of the measures at positions `places` (n,), periodic on closed curves."""
+        """Return the values (k, n) of the functions at positions `places` (n,), maybe in further turns."""
         turns = np.zeros(len(places))
         if closed:
             turns, places = np.divmod(places, self.arcs[-1])
@@ -72,12 +72,12 @@ class Measures:
 
     @cached_property
     def slopes(self) -> Floats:
-        """(k, m - 1) slopes of the k measures between successive `arcs`."""
+        """(k, m - 1) slopes of the k functions between each of the positions `arcs` and the next."""
         return np.diff(self.values, axis=1) / np.diff(self.arcs)
 
     @property
     def whole(self) -> Floats:
-        """(k, 1) increase of each measure from the first position to the last."""
+        """(k, 1) increase of each of the k functions along the whole curve."""
         return self.values[:, -1:] - self.values[:, :1]
 
 
@@ -97,7 +97,7 @@ class PlaceLinks:
     rest: Floats
 
     def values(self, places: Floats) -> Floats:
-        """Return the value f0 u0 + f1 u1 + rest (p,) for each pair u0, u1 of positions in `places`."""
+        """Return the residuals (p,) of the p conditions for the positions `places` (n,)."""
         return np.asarray((self.factors * places[self.pairs]).sum(axis=1) + self.rest)
 
 
@@ -113,7 +113,7 @@ def evened_places(
     The functions `measures` turn positions into lengths; steps are the differences of successive lengths.
     Positions in the mask `fixed` (n,) stay. `limit` is the logarithm of the largest ratio; it is relaxed if
     positions would move by more than `most` steps. On a `closed` curve, the last step leads to the first
-    position. `links` are further conditions. `change` is the weight μ of `GrowthLimit`.
+    position. `links` are further conditions. `change` is the weight of the change of ratios.
     """
     line = _Line.of(places, fixed, measures, closed, links, change)
     new = places
@@ -144,8 +144,8 @@ def evened_loops(
 ) -> Layout:
     """Return the layout with nodes moved along loops, so that steps between neighbours grow slowly.
 
-    `measures` has by loop index the functions, such as arc length, whose differences are steps. `limit` and
-    `most` are as in `evened_places`. Corners stay. If cells would fold, `layout` is returned unchanged.
+    `measures` has, by loop index, functions along a loop, such as arc length, in which steps are measured.
+    `limit` and `most` are as in `evened_places`. Corners stay. If cells would fold, nothing is changed.
     """
     mesh = layout.mesh
     nodes, arcs = mesh.nodes.copy(), mesh.places.arc.copy()

@@ -95,7 +95,7 @@ def cells_needed(length: float, first: float, last: float, heights: Heights) -> 
 
 
 def edge_in_layers(edge: Floats, count: int, first: float, last: float, heights: Heights) -> Floats:
-    """Return `count` nodes (count, 2) on the curve through an open edge, with layers at its ends.
+    """Return `count` new nodes (count, 2) on an open edge (n, 2), with cells that grow from its ends.
 
     `first` and `last` are the lengths of the first and of the last cell; 0: the length is not prescribed.
     """
@@ -108,7 +108,7 @@ def edge_in_layers(edge: Floats, count: int, first: float, last: float, heights:
 def arcs_in_layers(
     curve: Curve, count: int, first: float, last: float, heights: Heights
 ) -> tuple[Floats, float]:
-    """Return arc lengths (count,) of the nodes of `edge_in_layers`, and the largest growth ratio."""
+    """Return arc lengths (count,) of nodes whose cells grow from the curve's ends, and the largest ratio."""
     steps = np.empty(count - 1)
     begin = _arc_at(curve, 0.0, first) if first else 0.0
     end = _arc_at(curve, curve.length, last) if last else 0.0

@@ -42,11 +42,11 @@ class GrowthLimit:
 
     @classmethod
     def at(cls, growth: Floats, limit: float | Floats, change: float = CHANGE) -> Self:
-        """Return the term in which ρ0 are the logarithms `growth` (..., k), clipped to ±`limit`."""
+        """Return the penalty whose preferred values are `growth` (..., k), clipped to ±`limit`."""
         return cls(limit, np.clip(growth, -limit, limit), change)
 
     def values(self, growth: Floats, weight: float) -> Floats:
-        """Return the penalty (..., k) of growth ratios with logarithms `growth`; `weight` is w."""
+        """Return the penalty (..., k) of `growth`, logarithms of ratios; `weight` is that of the excess."""
         excess = np.maximum(np.abs(growth) - self.limit, 0.0)
         near = np.minimum(excess, LINEAR)
         return np.asarray(weight * near * (2.0 * excess - near) + self.change * (growth - self.wanted) ** 2)
@@ -61,11 +61,11 @@ class GrowthLimit:
 
 
 def damped(values: Callable[[Numbers], Floats], at: Numbers, step: Numbers, part: Indices) -> Numbers:
-    """Return the `step` (m,) of m unknowns, with parts of it halved until all values (p,) decrease.
+    """Return the changes `step` (m,) of m unknowns, halved as often as needed to decrease their values.
 
     `values` computes p values from the unknowns, which are now `at` (m,). Each unknown affects one value,
-    whose index is in `part` (m,). Steps that affect the same value are halved together, and are 0 if the
-    value never decreases.
+    whose index is in `part` (m,). Changes that affect the same value are halved together, and are 0 if it
+    never decreases.
     """
     start = values(at)
     share = np.ones(len(start))

@@ -19,9 +19,9 @@ def layer_arcs(
     """Return the distances (k, cells + 1) of nodes from the wall, on lines of `length` (k,).
 
     The first `constant` cells have the height `first`, a number or (k,). Further heights never decrease.
-    Their logarithms are a quadratic function of the index, and the last height is about `last` (k,). If
-    `last` is infinite, the ratio r of heights is constant. Otherwise the logarithm of every ratio is limited:
-    to (1 + `steeper`) log(r), or to log(`growth`) if that is larger.
+    Their logarithms are a quadratic function of the index, and the last height is about `last` (k,). Let r be
+    the constant ratio that fills the line. If `last` is infinite, all ratios are r. Otherwise the logarithms
+    of ratios are at most (1 + `steeper`) log(r), or log(`growth`) if that is larger.
     """
     rows = cells - constant + 1  # the last constant cell and those that grow
     first = np.broadcast_to(np.asarray(first, dtype=np.float64), length.shape)

@@ -29,12 +29,11 @@ class LayerSettings:
     Parameters
     ----------
     first : first-cell height, in the domain's unit, of all walls that are not in `heights`.
-    growth : largest mean ratio of neighbouring cells along a column.
+    growth : upper limit of the mean growth ratio of layers along a line from the wall.
     constant : number of cells, from the wall, that have the height of the first cell.
     multiple : divisor of the number of layers, so that coarser grids are nested.
     heights : first-cell heights of walls, by the name of the wall.
-    limit : largest ratio of neighbouring cells along lines from walls. If 0, the logarithm of the ratio may
-        be a fifth larger than log(`growth`).
+    limit : upper limit of each single growth ratio along such a line; 0: about `growth` to the power 1.2.
     """
 
     first: float
@@ -74,7 +73,7 @@ class LayerSettings:
 
     @property
     def elsewhere(self) -> float:
-        """Logarithm of the largest ratio of neighbouring cells along other lines, for example along walls."""
+        """Logarithm of the largest ratio of neighbouring cells along lines that do not leave walls."""
         return max(ELSEWHERE * math.log(self.limit or self.growth), math.log(MOST_GROWTH))
 
     @property
@@ -84,11 +83,11 @@ class LayerSettings:
 
     @property
     def grading(self) -> float:
-        """Growth of cell lengths outside of layers per distance from walls."""
+        """Increase of cell lengths outside of layers, divided by the increase of the distance from walls."""
         return min(GRADING, SPREAD * (self.limit - 1.0)) if self.limit else GRADING
 
     def below(self, growth: float) -> float:
-        """Return the growth ratio for cells outside the layers: `growth`, or less if it is limited."""
+        """Return `growth`, a ratio for cells outside the layers, or less if `limit` requires it."""
         return min(growth, 1.0 + NOMINAL * (self.limit - 1.0)) if self.limit else growth
 
     def arcs(self, length: Floats, first: float | Floats, last: Floats, cells: int) -> Floats:

@@ -21,7 +21,7 @@ _MOST = math.log(100.0)  # of the factor on the last cell of a line
 
 
 def limit_growth(nodes: Floats, growth: float, constant: int, last: int = 0) -> bool:
-    """Move nodes (ni, nj, 2) along lines of eta until all cells grow by at most `growth`; return success.
+    """Move nodes (ni, nj, 2) along lines of constant i until cells grow by at most `growth`; return success.
 
     The first `constant` and the last `last` cells of a line do not change. Nodes stay on the curve of their
     line, except where bends of the line are rounded.

@@ -41,7 +41,7 @@ def slide_walls(boundary: Boundary) -> tuple[Boundary, Controls | None]:
 
     The grid lines of an elliptic grid inside the new boundary leave both walls at right angles, except next
     to oblique west and east sides and at kinks of the walls. The controls are a function φ(ξ) that preserves
-    the uneven spacing common to both walls; they are None for even spacing.
+    the mean of the spacings of both walls; they are None if this is even.
 
     Raises InputError if the topology is not ``quad``.
     """

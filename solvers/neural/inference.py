@@ -36,11 +36,11 @@ def infer_many(
     """Return a grid inside each boundary by a shipped model, or by one that `meshonet train` made.
 
     `model` is the name of a shipped model, the path of a ``.safetensors`` file, or ``base`` for the conformal
-    solver; None is the default of the topology. `polish`: see `operator.Operator.solve`. `device` is where
-    torch computes the grids; ``auto`` polish there is 3 Picard steps for airfoil operators, and off for other
-    models. With `fallback`, a grid whose expected error is too large (see `confidence`) is replaced by one of
-    the method that the network imitates. Raises InputError if there is no such model or device, or if a
-    boundary does not suit the model.
+    solver; None is the default of the topology. `polish`: see `operator.Operator.solve`. If a `device` is
+    given, torch computes the grids on it, and ``auto`` polish is 3 Picard steps for models of airfoils and
+    off for others. With `fallback`, a grid whose expected error is too large (see `confidence`) is replaced
+    by one of the method that the network imitates. Raises InputError if there is no such model or device, or
+    if a boundary does not suit the model.
     """
     named = None if model is None else load(model)
     solutions: dict[int, Solution] = {}

@@ -18,7 +18,7 @@ OURS = "use a file made by meshonet train"  # remedy for a file that is no model
 
 
 class Kind(NamedTuple):
-    """A kind of model file; headers have `text` under the key ``kind``, and `version` under the key `key`."""
+    """A kind of model file, with `text` as the ``kind`` in its header, and `version` as the entry `key`."""
 
     text: str
     key: str

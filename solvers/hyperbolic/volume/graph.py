@@ -18,7 +18,7 @@ _WIDTH, _FALL = 4, 0.35  # rings of nodes around irregular ones that are smoothe
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """A neighbour of a node, maybe a ghost, at the position own * x(node) + sign * x(base) + shift."""
+    """A neighbour, maybe a ghost, of a node x, at `own` x + `sign` y + `shift`; y is the node `base`."""
 
     base: int
     own: float = 0.0
@@ -31,21 +31,21 @@ class Seen:
         return self.own == 0.0 and bool((self.sign == 1.0).all())
 
     def mirrored(self, plane: Plane) -> "Seen":
-        """Return the neighbour's mirror image, reflected in a plane."""
+        """Return the mirror image of this neighbour in `plane`."""
         turned = np.where(np.arange(3) == plane.axis, -1.0, 1.0)
         return Seen(
             self.base, self.own, turned * self.sign, turned * self.shift + (1.0 - turned) * plane.value
         )
 
     def opposite(self, splay: float) -> "Seen":
-        """Return the ghost beyond the node, 1 + `splay` times as far away from it as this neighbour."""
+        """Return a ghost on the other side of the node, 1 + `splay` times as far away as this neighbour."""
         far = 1.0 + splay
         return Seen(self.base, 1.0 + far, -far * self.sign, -far * self.shift)
 
 
 @dataclass(frozen=True, eq=False)
 class MarchGraph:
-    """The graph of a surface as arrays (``kernels/surfaces/graph.h``), for nodes in the `order` (n,)."""
+    """The nodes of a surface, sorted by `order` (n,), and their neighbours (``kernels/surfaces/graph.h``)."""
 
     order: Indices
     red: int

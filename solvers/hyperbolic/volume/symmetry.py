@@ -29,8 +29,8 @@ def symmetry_of(surface: Surface, axis: str | None, far: float) -> Symmetry:
     """Return the planes of symmetry of a surface that is marched to the distance `far`.
 
     `axis` is the normal of the planes, ``none`` for no plane, or None to detect planes. A detected plane is
-    left out if walls that face it are nearer than `far`. Raises InputError if no open edge is in a plane
-    normal to `axis`, or if walls that face this plane are nearer than `far`.
+    left out if the march would reach it: if much of the surface faces it, nearer than `far` (`closes_in`).
+    Raises InputError if no open edge is in a plane normal to `axis`, or if the march would reach the plane.
     """
     planes, inside = symmetry_planes(surface, axis)
     kept, notes = [], []
@@ -100,7 +100,7 @@ def _named(nodes: Floats, sides: Indices, axis: int, slack: float) -> tuple[Plan
 
 
 def in_planes(surface: Surface, planes: tuple[Plane, ...], inside: Indices) -> Floats:
-    """Return nodes (n, 3) with the open edges in the mask `inside[p]` moved exactly into ``planes[p]``."""
+    """Return nodes (n, 3) with the open edges marked in ``inside[p]`` (k,) moved exactly into plane p."""
     nodes, edges = surface.nodes.copy(), surface.open_edges
     for plane, flags in zip(planes, inside, strict=True):
         nodes[edges[flags], plane.axis] = plane.value

@@ -17,7 +17,7 @@ def limit(
 
     Parameters
     ----------
-    step : ``step(x, members)`` returns the next iterates of batch members with indices `members` from `x`.
+    step : ``step(x, members)`` returns the iterates after `x`; `members` are the batch indices of its rows.
     start : (batch, n) initial values.
     tol : (batch,) a member has converged if no value changes by more than this in a step.
     most : greatest number of steps.

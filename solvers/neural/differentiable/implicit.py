@@ -20,7 +20,7 @@ class Equations(Protocol):
         ...
 
     def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the solutions (batch, 2, ni, nj), and the smoothness weight (batch,) of each, 0 if none.
+        """Return the solutions (batch, 2, ni, nj), and a parameter (batch,) of each for `adjoint`.
 
         Only the boundary nodes of `nodes` are used. Raises MemberError if a grid has no solution.
         """
@@ -29,8 +29,8 @@ class Equations(Protocol):
     def adjoint(self, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
         """Return the derivatives (batch, 2, ni, nj) of functionals of grids with respect to boundary nodes.
 
-        `nodes` are the solutions, `number` their smoothness weights from `solve`. `gradient` has the
-        derivatives of the functionals with respect to all nodes. The result has no meaning at inner nodes.
+        `nodes` are the solutions, `number` their parameters from `solve`. `gradient` has the derivatives of
+        the functionals with respect to all nodes. The result has no meaning at inner nodes.
         """
         ...
 
@@ -40,7 +40,7 @@ class Converged(BatchFunction):
 
     @staticmethod
     def forward(equations: Equations, nodes: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the solutions and the smoothness weights, as `Equations.solve`."""
+        """Return the result of `Equations.solve`."""
         unit = unit_of(nodes)
         solution, number = in_parts(equations.solve, equations.most(nodes), nodes / unit)
         return unit * solution, number
@@ -54,7 +54,7 @@ class Converged(BatchFunction):
 
     @staticmethod
     def backward(ctx: Any, gradient: Tensor, _: Tensor) -> tuple[None, Tensor]:
-        """Return None for `equations`, and the derivative with respect to `nodes`, zero at inner nodes."""
+        """Return the gradients by both inputs: None for `equations`; for `nodes`, 0 at inner nodes."""
         return None, Adjoint.apply(ctx.equations, *ctx.saved_tensors, gradient)  # type: ignore[no-untyped-call]
 
 

@@ -20,7 +20,7 @@ from meshonet.solvers.neural.differentiable.members import (
 def recorded(
     function: Callable[..., Tensor], *sides: Tensor, counts: tuple[int, int] | None = None
 ) -> Tensor:
-    """Return the nodes (batch, ni, nj, 2) that `function` makes for `sides` (batch, n, 2), also in `vmap`.
+    """Return nodes (batch, ni, nj, 2) by `function` for `sides` (batch, n, 2), so that `vmap` can be used.
 
     If `counts` (ni, nj) are given, members without a grid get NaN nodes; otherwise MemberError is raised.
     """

@@ -132,6 +132,6 @@ def folded(nodes: Tensor) -> Tensor:
 
 
 def between(values: Tensor, n: int) -> Tensor:
-    """Return values at `n` equal steps, interpolated linearly between `values` (..., m) at equal steps."""
+    """Interpolate `values` (..., m) linearly to `n` values; both are evenly spaced over the same range."""
     m = values.shape[-1]
     return values if m == n else values @ array_like(acute.linear(m, n), values, torch).mT

@@ -28,9 +28,9 @@ def picard(c: Tensor) -> Tensor:
 
 
 class Settled(torch.autograd.Function):
-    """Torch function that solves Winslow's equations, starting at Fourier modes (batch, modes, LEVELS).
+    """Torch function from initial to converged solutions of Winslow's equations in the strip.
 
-    The highest modes stay near the initial modes.
+    Both are Fourier modes along theta (batch, modes, LEVELS); the highest are held near the initial ones.
     """
 
     @staticmethod

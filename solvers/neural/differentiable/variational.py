@@ -70,9 +70,9 @@ class Optimum:
 
 
 def newton(nodes: Tensor, smoothness: Tensor) -> Tensor:
-    """Return the optimal grids (batch, 2, ni, nj) near `nodes`, which must have no folded cells.
+    """Return the minima (batch, 2, ni, nj) of the variational functional near `nodes` without folded cells.
 
-    `smoothness` (batch,) is β of the functional. Raises MemberError with the grids that do not converge.
+    `smoothness` (batch,) weights its smoothness term. Raises MemberError with grids that do not converge.
     """
     nodes = nodes.clone()
     moving = torch.arange(len(nodes), device=nodes.device)

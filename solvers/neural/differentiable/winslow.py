@@ -30,7 +30,7 @@ class Winslow:
         return len(nodes) if nodes.is_cuda else MOST // nodes[0].numel()
 
     def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the solutions (batch, 2, ni, nj), and zeros (batch,) in place of smoothness weights."""
+        """Return the solutions (batch, 2, ni, nj), and zeros (batch,), as `adjoint` needs no parameters."""
         check_finite(nodes)
         return nested(nodes), nodes.new_zeros(len(nodes))
 

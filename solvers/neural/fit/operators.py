@@ -108,7 +108,7 @@ class OperatorTask(ModelTask):
 
 
 def differences(model: Architecture, samples: Samples) -> Floats:
-    """Return the differences (n, ni, nj, 2) of grids from base grids, to which the model adds its output."""
+    """Return the wanted outputs (n, ni, nj, 2): grids minus the base grids to which outputs are added."""
     if model.base == "none":
         return samples.nodes
     return samples.nodes - np.array([extend(boundary) for boundary in samples.boundaries()])
@@ -128,9 +128,9 @@ def run(
 ) -> Run:
     """Return the run that trains `model` on the training split of `data`, never on its test split.
 
-    `held_out` is the number of training grids, spread evenly, on which the loss is monitored. `settings` has
-    values by name that replace default settings of the model. Raises InputError if there are too few grids or
-    unknown settings.
+    `held_out` grids of this split, evenly spaced, are not trained on; the loss on them is monitored.
+    `settings` has values by name that replace default settings of the model. Raises InputError if there are
+    too few grids or unknown settings.
     """
     made = architecture(model, data.topology, settings)
     rows = np.arange(len(data)) if made.physics else data.where("train")

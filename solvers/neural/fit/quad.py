@@ -175,8 +175,8 @@ def run(
     """Return the run that trains the U-Net; the last `held_out` domains are never trained on.
 
     `initial` is an operator whose weights and sizes are used at the start. `weights` are weights of loss
-    terms, by default `PARTS`. Raises InputError if less than one batch remains for training, if a weight is
-    unknown, negative or not finite, or if `initial` has no such network.
+    terms, by default `PARTS`. Raises InputError if less than one batch remains for training, if one of
+    `weights` is unknown, negative or not finite, or if `initial` is no quad operator.
     """
     sizes, kept = sizes or QuadUNetSizes(), plan.kept(len(data), held_out, "domains")
     if initial is not None:

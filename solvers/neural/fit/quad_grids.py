@@ -41,7 +41,7 @@ class Quads:
         return Quads(base, step, winslow, variational, self.around)
 
     def grids(self) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-        """Return the grids `base`, `step`, `winslow` and `variational`."""
+        """Return the arrays `base`, `step`, `winslow` and `variational`."""
         return self.base, self.step, self.winslow, self.variational
 
 

@@ -40,9 +40,9 @@ class StripSizes:
 
 
 class StripTask(Task):
-    """Training of the network for airfoils on solved strips (images of domains) and their mirror images.
+    """Training of the network for airfoils on Winslow's solutions in the strip and their mirror images.
 
-    `held_out` has the strips on which errors are measured, `sizes` has the sizes of the network.
+    `held_out` has the solutions on which errors are measured, `sizes` has the sizes of the network.
     """
 
     parts: tuple[str, ...] = ("difference",)
@@ -71,14 +71,14 @@ class StripTask(Task):
         return {"loss": median, "p90": p90, "worst": worst}
 
     def answers(self) -> list[Complexes]:
-        """Return the network's predictions for the held-out bodies, each like `Strips.residual`."""
+        """Return for each held-out body the network's prediction of `Strips.residual`."""
         channels, scalars, size = encode(self.held_out.wall, self.held_out.far)
         with torch.no_grad():
             out = self.net(tensor(channels).to(self.device), tensor(scalars).to(self.device)).cpu()
         return list(decode(out.numpy().astype(np.float64), self.basis, self.scale, size))
 
     def figures(self, epoch: int) -> dict[str, Any]:  # noqa: ARG002
-        """Return error quantiles on held-out bodies, for base grids and networks, also after Picard steps."""
+        """Return error quantiles on held-out bodies: without and with the network, and after Picard steps."""
         test, errors = self.held_out, dict[str, list[float]]()
         for wall, far, goal, answer in zip(test.wall, test.far, test.residual, self.answers(), strict=True):
             base = harmonic(wall, far, across().eta)
@@ -126,5 +126,5 @@ def run(
 
 
 def distance(answer: Complexes, goal: Complexes) -> float:
-    """Return the root mean square of |answer - goal| over a strip; both are Fourier modes (.., LEVELS)."""
+    """Return the root mean square difference, over the strip, of functions with these Fourier modes."""
     return float(np.sqrt((np.abs(answer - goal) ** 2).sum(axis=0).mean()))

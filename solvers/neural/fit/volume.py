@@ -58,7 +58,7 @@ class VolumeTask(Task):
         self.to(device)
 
     def forward(self, rows: Tensor, step: int) -> Tensor:
-        """Return the terms of the loss, averaged over the volumes with indices `rows`, scaled to unit size.
+        """Return the terms of the loss, averaged over the volumes `rows` (indices), which have unit size.
 
         ::
 
@@ -178,7 +178,7 @@ def run(
 ) -> Run:  # fmt: skip
     """Return the run that trains a network for each volume of `data`.
 
-    Raises InputError if `held_out` is not 0, or if settings are unknown.
+    Raises InputError if settings are unknown, or if `held_out` is not 0, since networks are not shared.
     """
     if held_out:
         raise InputError("a network for one volume holds none out", "leave {held_out} out")

@@ -122,7 +122,7 @@ def wavelets(n: int, levels: int) -> Floats:
 
 @dataclass(frozen=True)
 class LNO(AlongXi):
-    """Laplace neural operator along xi: h <- sin(K h + W h + b), where K is a linear system (`respond`).
+    """Laplace neural operator along xi: h <- sin(r + W h + b), r: response of dynamical systems to h.
 
     Cao, Goswami & Karniadakis, LNO: Laplace neural operator for solving differential equations, arXiv
     2303.10528.
@@ -150,12 +150,12 @@ class LNO(AlongXi):
 def respond(xp: Any, poles: Any, residues: Any, h: Any) -> Any:
     """Return the responses (batch, n, out) of linear systems to `h` (batch, n, in), at n places from 0 to 1.
 
-    `poles` (in, out * poles, 2) are the logarithms of decay rates, and the frequencies in half turns.
-    `residues` (in, out, poles, 2) are real and imaginary parts. With poles mu_n, residues beta_n, and the
-    Fourier coefficients alpha_l of h at frequencies omega_l, the response that starts at rest is ::
+    `poles` (in, out * m, 2) are log(decay rate) and frequency (in half turns) of m poles per channel pair,
+    `residues` (in, out, m, 2) real and imaginary parts. With poles mu_j, residues beta_j, and the Fourier
+    coefficients alpha_l of h at frequencies omega_l, the response that starts at rest is ::
 
-        sum_l alpha_l H(i omega_l) exp(i omega_l xi) - sum_n beta_n A(mu_n) exp(mu_n xi)
-        H(s) = sum_n beta_n / (s - mu_n)        A(s) = sum_l alpha_l / (i omega_l - s)
+        sum_l alpha_l H(i omega_l) exp(i omega_l xi) - sum_j beta_j A(mu_j) exp(mu_j xi)
+        H(s) = sum_j beta_j / (s - mu_j)        A(s) = sum_l alpha_l / (i omega_l - s)
     """
     inputs, outputs, count, _ = residues.shape
     omega, waves, xi = (array_like(table, h, xp) for table in _frequencies(h.shape[1]))

@@ -36,7 +36,7 @@ class Architecture:
     sensors: int = 50  # points of the boundary that the branches read, m in the paper
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the array shapes of the trained parameters, by name, for training grids of `frame`."""
+        """Return the array shapes of the trained parameters, by name; `frame` tells the training grids."""
         raise NotImplementedError
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
@@ -65,7 +65,7 @@ class Architecture:
         """Return the model's corrections (batch, p, 2) to an initial grid, the base grid, at p points.
 
         `xp` is numpy or torch, `w` has all arrays of the model by name. `inputs` is the result of `encode`,
-        `places` the result of `seen`. For models that are defined only at the nodes of the training grids,
-        `index` (p,) has the indices of the points among these nodes.
+        `places` that of `seen` for the points. For models that are defined only at the nodes of the training
+        grids, `index` (p,) has the indices of the points among these nodes.
         """
         raise NotImplementedError

@@ -37,7 +37,7 @@ class MeshONet(Architecture):
         return {**branches, **dense_shapes("trunk", trunk), "output/bias": (2,)}
 
     def seen(self, xp: Any, points: Any) -> Any:
-        """Return the output of the paper's Lift-Layer at `points` (`sensors.lift`)."""
+        """Return sines, cosines and powers of xi and eta (p, features) at `points` (p, 2)."""
         return lift(xp, points, self.powers)
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
@@ -75,10 +75,10 @@ class DeepONet(Architecture):
 
 @dataclass(frozen=True)
 class MIONet(DeepONet):
-    """A network of xi and eta (the trunk), and one for x and one for y of boundary points (the branches).
+    """A DeepONet with two branches, for x and y of boundary points s, whose outputs are multiplied.
 
-    ``x = (branch_x(s_x) * branch_y(s_y))[:k] . trunk(xi, eta) + b`` with boundary points s and a bias b; y
-    has features ``[k:]``. Jin, Meng & Lu, SIAM Journal on Scientific Computing 44 (2022) A3490.
+    ``x = (branch_x(s_x) * branch_y(s_y))[:k] . trunk(xi, eta) + b`` with a bias b, and y from the other half,
+    ``[k:]``, of the product. Jin, Meng & Lu, SIAM Journal on Scientific Computing 44 (2022) A3490.
     """
 
     def shapes(self, frame: Frame) -> Shapes:

@@ -133,16 +133,16 @@ def _waves(ni: int, nj: int, modes: int, padding: int) -> tuple[NDArray[Any], Fl
 
 @dataclass(frozen=True)
 class KNO(AlongXi):
-    """Koopman neural operator along xi; `width` is the number of observables.
+    """Koopman neural operator along xi; `width` is the number of observables g of the inputs.
 
-    K multiplies the observables' lowest Fourier modes, each by the same matrix. W restores the other modes.
-    ::
+    K multiplies the lowest Fourier modes, each by the same matrix. W restores the other modes. A decoder
+    computes nodes from the new observables::
 
-        h = g;  `steps` times: h <- h + K h;  g <- tanh(h + W g + b)
+        tanh(h + W g + b)        h: at first g, then `steps` times h <- h + K h
 
-    A second decoder reconstructs the inputs from the observables (weight `reconstruction` in the loss). Xiong
-    et al., Koopman neural operator as a mesh-free solver of non-linear partial differential equations,
-    Journal of Computational Physics 513 (2024) 113194.
+    A second decoder reconstructs the inputs from g (weight `reconstruction` in the loss). Xiong et al.,
+    Koopman neural operator as a mesh-free solver of non-linear partial differential equations, Journal of
+    Computational Physics 513 (2024) 113194.
     """
 
     modes: int = 16  # on which the operator acts
@@ -164,7 +164,7 @@ class KNO(AlongXi):
         return xp.tanh(h + dense(xp, w, "local", g))
 
     def penalty(self, xp: Any, w: Weights, inputs: Weights) -> Any:
-        """Return the weighted mean square error with which the second decoder reconstructs the inputs."""
+        """Return `reconstruction` times the mean square error of inputs reconstructed from observables."""
         edges = inputs["edges"]
         observables = xp.tanh(dense(xp, w, "lift", edges))
         return self.reconstruction * ((dense(xp, w, "inputs", observables) - edges) ** 2).mean()
