@@ -121,7 +121,7 @@ def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
     """Return the condition `text`, such as ``max_angle > 170``, as an object; a grid fails if it is true.
 
     Without a statistic, ``>`` is for the largest value of all cells, ``<`` for the smallest. `more` has names
-    of values besides those in this package. Raises InputError: no condition; unknown metric or statistic.
+    of further values to compare. Raises InputError: no condition; an unknown metric or statistic.
 
     >>> parse_gate("max_angle > 170").statistic, parse_gate("scaled_jacobian.p01<0.2").statistic
     ('max', 'p01')

@@ -43,7 +43,7 @@ class Lines:
 
 @dataclass(frozen=True)
 class BlockLines:
-    """Growth ratios and bends (turning angles) of grid lines along `axis`, at nodes inside a block or not."""
+    """Growth ratios and bends (turning angles) of grid lines along `axis`, inside a block or at its sides."""
 
     block: int
     axis: int

@@ -141,7 +141,7 @@ class BladeProfile:
         )
 
     def sharpness(self, trailing: bool) -> tuple[float, float]:
-        """Return the largest turn of the curve at one point of an edge, in radians, and a fraction.
+        """Return the largest turn at a point of the leading or `trailing` edge, in radians, and a fraction.
 
         The fraction is the sum of the two largest turns divided by the sum of all turns at the edge.
         """
@@ -209,7 +209,7 @@ class BladeProfile:
         return np.sort(wrapped(at, -0.25))
 
     def at(self, u: Floats) -> Floats:
-        """Return coordinates s, theta, h (n, 3) in the channel (see `Channel`) at places `u` (n,), 0 to 1."""
+        """Return coordinates s, theta, h (n, 3) in the channel, at `u` (n,), from 0 to 1 around the blade."""
         arcs = self.arcs(u)
         m, theta = self.curve.at(arcs).T
         return np.stack([self._map.back(m), theta, self._heights(arcs)], axis=1)

@@ -88,7 +88,7 @@ class Section:
 
     @property
     def placement(self) -> Floats:
-        """Chord, twist in radians, x and y of the leading edge, and centre of the twist in chords (6,)."""
+        """Array (6,): chord, twist in radians, x and y of the leading edge, centre of the twist in chords."""
         return np.array([self.chord, math.radians(self.twist), self.x, self.y, *self.about])
 
 

@@ -153,8 +153,8 @@ class Stack:
     def cants(self) -> Floats:
         """Angles (n,) in radians by which the sections are rotated about x.
 
-        For sections with ``cant="panel"`` it is the mean dihedral of the wing on both sides of the section,
-        and 0 in a plane of symmetry.
+        With ``cant="panel"``, the angle is the mean dihedral of the wing on both sides of the section, and 0
+        in a plane of symmetry.
         """
         panels = self.dihedrals
         own = np.concatenate([[0.0], 0.5 * (panels[1:] + panels[:-1]), panels[-1:]])
@@ -165,7 +165,7 @@ class Stack:
 
     @property
     def steep(self) -> str:
-        """Note on the part of a wing that is most oblique to its sections; empty up to 20 degrees."""
+        """Note on the part of a wing that is most oblique to its sections; empty if up to 20 degrees."""
         if self.kind != "wing":
             return ""
         inclined = np.abs(self.dihedrals - np.stack([self.cants[:-1], self.cants[1:]])).min(axis=0)
@@ -194,7 +194,7 @@ class Stack:
         return self.canted(nodes, z) if self.cants.any() else nodes
 
     def canted(self, nodes: Floats, z: Floats) -> Floats:
-        """Return `nodes` (m, ..., 3) of sections at `z` (m,), each rotated about x at its leading edge."""
+        """Return `nodes` (m, ..., 3) of sections at `z` (m,), rotated by `cants` about x at leading edges."""
         values = np.stack([np.array([section.y for section in self.sections]), self.cants], axis=1)
         y, cant = self.between_sections(values, z).reshape(len(z), *[1] * (nodes.ndim - 2), 2).T
         place = np.stack([y.T, z.reshape(y.T.shape)], axis=-1)

@@ -38,7 +38,7 @@ class DrawnEdge(NamedTuple):
 
     @property
     def is_wall(self) -> bool:
-        """Whether the ends are more than half the length apart, as those of a channel's wall are."""
+        """Whether the ends are more than half the curve's length apart, as those of a channel's wall are."""
         length = float(np.hypot(*np.diff(self.points, axis=0).T).sum())
         return float(np.hypot(*(self.points[-1] - self.points[0]))) > _STRAIGHT * length
 

@@ -87,7 +87,7 @@ def wake_line(wall: Floats, axis: Floats, chord: float, length: float, first: fl
 
 
 def growing(first: float, length: float, cells: int) -> Floats:
-    """Return distances (cells + 1,) of nodes, divided by the length `first` of the first of growing cells."""
+    """Return distances (cells + 1,) of nodes along `length`, divided by the first cell's length `first`."""
     if first * cells >= length or cells < 2:
         return np.arange(cells + 1.0)
     try:

@@ -54,7 +54,7 @@ class Sampling:
     wake : float, optional
         Length of the wake of a C grid in chords; None: the far-field distance.
     wake_nodes : int, optional
-        Number of nodes from the trailing edge to the end of the wake. None: by the cell length at this edge.
+        Number of nodes from the trailing edge to the end of the wake. None: set by cells at this edge.
     base_nodes : int, optional
         Number of nodes on a blunt trailing edge with both corners; odd for an O grid. None: by its width.
     base : float, optional
@@ -126,7 +126,7 @@ class Sampling:
             raise InputError(problem, "give four point indices")
 
     def corner_steps(self, cells: int) -> tuple[int, ...]:
-        """Return numbers, largest first: one shall divide the node indices of corners on a wall of `cells`.
+        """Return numbers to try, largest first, as divisors of node indices of corners on a wall of `cells`.
 
         >>> Sampling().corner_steps(404), Sampling().corner_steps(398), Sampling(refined=8).corner_steps(400)
         ((4, 2, 1), (2, 1), (8,))

@@ -57,8 +57,8 @@ class _Edge(NamedTuple):
 def with_bases(patches: Sequence[Floats]) -> tuple[list[Floats], list[int], tuple[str, ...]]:
     """Return `patches` (ni, nj, 3), and after them a patch (base) that closes each open trailing edge.
 
-    Also return the index of the patch above each base, and notes. Raises InputError: the two ends of a
-    trailing edge, along the span, have different numbers of cells across.
+    Also return the index of the patch above each base, and notes. Raises InputError: a trailing edge with
+    different numbers of cells across its two ends.
     """
     nodes, lattices = merged(patches)
     sides = _open_sides(patches, nodes, lattices)

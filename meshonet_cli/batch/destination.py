@@ -108,9 +108,9 @@ class Destination:
     def part_size_for(self, inputs: Inputs | DrawnInputs, files: Files, *, elsewhere: bool) -> int:
         """Return the number of inputs in a part of the dataset; 0 if the output has no parts.
 
-        There are parts if the user asks for them, or if a dataset in parts is continued. There are also parts
-        for more than `MANY` inputs, and with ``--shard``, where each job has a share of the inputs. Then, or
-        if workers may be on other machines (`elsewhere`), parts are smaller. Raises InputError if an existing
+        There are parts if the user asks for them, if a dataset in parts is continued, if there are more than
+        `MANY` inputs, or with ``--shard``, where each job has a share of the inputs. Parts are smaller with
+        ``--shard``, or if workers may be on other machines (`elsewhere`). Raises InputError if an existing
         dataset would be replaced or cannot be continued.
         """
         if not inputs.more_than(0):

@@ -19,7 +19,7 @@ class Keys:
         self._names = UniqueNames()
 
     def named(self, item: Item[Any], what: Any) -> Any:
-        """Return a grid or boundary `what` with a unique name. Without a title, its old name becomes one."""
+        """Return a grid or boundary with a unique name, and with its old name as title if it has none."""
         if not isinstance(what, Grid | Boundary):
             return what
         key = self._names.add(item.stem if _of_file(item) else what.name)

@@ -35,7 +35,7 @@ class PartTask:
 
 @dataclass
 class PartDone:
-    """A file of a dataset after the task that makes it, with a report or an error for each of its grids."""
+    """Result of making one file (part) of a dataset, with a report or an error for each of its grids."""
 
     number: int  # of the part
     path: str  # of its file

@@ -49,7 +49,7 @@ def records(
 ) -> Iterator[Item[Any]]:  # fmt: skip
     """Yield the members of all inputs; for an unreadable member, the item contains the error.
 
-    With `alone`, the only input of a batch is read; a shape drawn from a family then needs no number.
+    `alone`: there is only one input; a shape drawn from a family then needs no number in messages.
     """
     count = 0
     for each in inputs:

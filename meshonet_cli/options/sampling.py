@@ -99,7 +99,7 @@ class SamplingOptions:
     )
 
     def placed(self, layers: "Mapping[str, Any] | None" = None) -> "Sampling":
-        """Return these options as `Sampling`. `layers`, options of boundary layers, can set `nj`."""
+        """Return these options as `Sampling`. If `layers` has a growth ratio, ``--res N`` sets only `ni`."""
         from meshonet.geometry.spacing.sampling import Sampling
         from meshonet.solvers.pipeline.uses import counted
 

@@ -68,7 +68,7 @@ class BodyMap:
         return _between(self.table, along, across) + at_body * (away * away)[:, None]
 
     def arcs(self, s: Floats) -> Floats:
-        """Return arc lengths (n,) along the body from the nose to places with the coordinate `s` (n,)."""
+        """Return arc lengths (n,) along the body from the nose to places with the mapped coordinate `s`."""
         along = s * ((_LINES - 1) / self.body.length)
         return np.clip(_between(self._arcs, along, np.zeros_like(s))[:, 0], 0.0, self.body.length)
 
@@ -78,7 +78,7 @@ class BodyMap:
         return np.hypot(points[..., 1] - self.body.y, points[..., 2])
 
     def steepness(self, places: Floats) -> Floats:
-        """Return angles (...) in radians between z (spanwise) and tangents around the body at `places`."""
+        """Return angles (...) in radians from z (spanwise) to tangents around a body at `places` (..., 3)."""
         return np.minimum(places[..., 1], np.pi - places[..., 1])
 
     def places(self, points: Floats, near: Floats | None = None) -> Floats:

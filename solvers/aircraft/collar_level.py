@@ -128,7 +128,7 @@ class CollarLevel:
 
     @classmethod
     def of(cls, plan: CollarPlan, hole: Hole) -> "CollarLevel":
-        """Return the collar (cells around a wing) of the section `hole`, with numbers of cells of `plan`."""
+        """Return the collar (cells) around a wing's section `hole`, with the numbers of cells in `plan`."""
         plane, box = hole.plane, hole.box
         edge, nose, half = plan.edge, plan.nose, (len(plane) - 1) // 2
         outer = outer_loop(plane, box, (edge, nose))
@@ -174,7 +174,7 @@ class CollarLevel:
 
     @cached_property
     def beside(self) -> tuple[float, float]:
-        """Lengths of the first cells below and above the collar (cells around the wing), around the body."""
+        """Lengths around the body of the first cells below and above the collar (cells around the wing)."""
         outer, half = self.ring[:, -1, 1], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
         corners = (half + nose, len(outer) - 1 - edge), (half - nose, edge)

@@ -217,7 +217,7 @@ def _wake_cells(
 def corner_cell(cells: float, first: float, chord: float) -> float:
     """Return the length of wall cells at a blunt trailing edge.
 
-    This is `first`, or more if the `cells` around the airfoil would have to grow by over 50 % each.
+    This is `first`, or more if growth ratios of the `cells` around the airfoil would be over 1.5.
     """
     side = 0.5 * cells
     return max(first, chord / side * math.pow(_STEEP, -0.5 * side))

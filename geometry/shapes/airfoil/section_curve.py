@@ -45,7 +45,7 @@ def swapped_note(section: CleanSection, places: Sequence[str]) -> tuple[str, ...
 def section_curve(
     section: CleanSection, places: Sequence[str]
 ) -> tuple[Curve, tuple[str, ...], InputError | None]:
-    """Return the curve through a section's points, notes, and None or an error: upper and lower side cross.
+    """Return the curve through a section's points, notes, and an error if its two sides cross, else None.
 
     Sides that cross only by rounding are moved apart (see `shapes.airfoil.separate_surfaces`). Intervals in
     which the curve would cross itself are made straight.

@@ -36,7 +36,7 @@ def shared(
 ) -> Iterator[Pair]:  # fmt: skip
     """Yield each member of the batch `todo` with its result; `work` runs on the workers of `engine`.
 
-    Members keep the order of `todo`. A task has `size` members; if `size` is 1, it has more if they are fast.
+    Members keep the order of `todo`. A task has `size` members; for a `size` of 1, more if they are fast.
     """
     timed, grows, most = _Timed(work), size == 1, size
 
