@@ -72,7 +72,7 @@ def symmetric_eigen(matrix: Any) -> tuple[Floats, Floats]:
 def singular_values(matrix: Any) -> tuple[Floats, Floats, Floats]:
     """Return u (n, m), descending s (m,) and v (m, m) such that ``matrix`` (n, m) is ``u @ diag(s) @ v``.
 
-    Columns of u for which s is 0 are 0. By one-sided Jacobi rotations (Hestenes, J. SIAM 6, 1958).
+    Where s is 0, the column of u is 0. By one-sided Jacobi rotations (Hestenes, J. SIAM 6, 1958).
     """
     columns = np.array(matrix, np.float64)
     size = columns.shape[1]

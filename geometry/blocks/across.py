@@ -47,7 +47,7 @@ def rows_at(grid: Grid, patch: Patch, depth: int) -> Floats:
 
 
 def rows_beside(grid: Grid, block: int, side: Side, span: Range, depth: int) -> Floats:
-    """Return `depth` rows of nodes, (depth, n, d) or (depth, n, m, 3), the first on part `span` of a side."""
+    """Return `depth` rows of nodes, (depth, n, d) or (depth, n, m, 3), inwards from part `span` of a side."""
     axis, end = PLACES[side]
     nodes = np.moveaxis(grid.blocks[block].nodes, axis, 0)
     return (nodes[::-1] if end else nodes)[(slice(depth), *(slice(first, last + 1) for first, last in span))]

@@ -52,9 +52,9 @@ class Connection:
         return (self.block, self.side, self.range), (self.donor, self.donor_side, self.donor_range)
 
     def pairs(self, values: Sequence[NDArray[Any]]) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Return views, (n, 1) or (n, m, 1), of `values` at the nodes of the side and at the donor's nodes.
+        """Return the values at the nodes of the side, and those at the donor's nodes in the same order.
 
-        `values` has one array per block. Both views are in the node order of the side.
+        `values` has one array (ni, nj[, nk]) per block. The results are views of it, (n, 1) or (n, m, 1).
         """
 
         def face(block: int, side: Side) -> NDArray[Any]:
@@ -76,7 +76,7 @@ class Connection:
         return (self.transform(own) if self.transform else own), donor
 
     def check(self, face: Face) -> None:
-        """Raise InputError unless the two arrays of `nodes` are bitwise equal."""
+        """Raise InputError unless the connected nodes are bitwise equal; for `face` see `nodes`."""
         own, donor = self.nodes(face)
         if own.shape != donor.shape:
             counts = f"{own.shape[:-1]} nodes to {donor.shape[:-1]}"
@@ -172,7 +172,7 @@ def wake_cells(connections: Sequence[Connection]) -> int:
 def wake_nodes(south: Floats) -> int:
     """Return how many nodes at the start of `south` (ni, 2) are repeated in reverse order at its end.
 
-    If all nodes are repeated, there is no wake, and the result is 0.
+    If all nodes are repeated, no body is left between them, and the result is 0.
     """
     half = south[: len(south) // 2]
     differs = (half != south[::-1][: len(half)]).any(axis=1)

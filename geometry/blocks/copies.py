@@ -34,7 +34,7 @@ def copied(grid: Grid, copies: int | Sequence[int]) -> Grid:
     The period of `grid` is a rotation, a translation, or several translations. `copies` gives the number of
     copies along each period. Rotated copies fill at most a whole turn.
 
-    Raises InputError: a grid that is not periodic; not one number for each period; a number out of range.
+    Raises InputError: a grid that is not periodic; too few or too many numbers; a number out of range.
     """
     counts = (copies,) if isinstance(copies, int) else tuple(copies)
     if counts == (1,):

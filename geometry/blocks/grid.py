@@ -49,8 +49,8 @@ _MOST_SHOWN = 6
 class Origin:
     """Where a sample of a dataset comes from.
 
-    `parameters` are shape parameters. `split` is ``train``, ``test`` or empty. `title` is the name of the
-    shape inside its file, if the sample is named after the file.
+    `parameters` are shape parameters. `split` is ``train``, ``test`` or empty. `title` is the shape's own
+    name, if the sample has the name of its file instead.
     """
 
     parameters: tuple[tuple[str, float], ...] = ()
@@ -144,7 +144,7 @@ class Grid(Connected):
 
     @cached_property
     def topology(self) -> Topology:  # type: ignore[override]
-        """For a single planar block ``quad``, ``o`` or ``c``, by its connections; otherwise ``blocks``."""
+        """``quad``, ``o`` or ``c`` for a single planar block, by its connections; ``blocks`` otherwise."""
         if self.form != "plane":
             return "blocks"
         return topology_of(list(map(_COUNTS, self.blocks)), self.connections)

@@ -28,7 +28,7 @@ def owners_of(
 ) -> NDArray[np.intp]:
     """Return, for each cell (n,) or (n, m) at a side, the index of the last patch that contains it.
 
-    `inside` lists the connected parts of the sides: the side and index range of each. Cells in these parts
+    `inside` lists the parts of sides at connections, each as a side and an index range of nodes. Their cells
     get `JOINED`. Other cells without a patch get `UNNAMED`. `counts` are the block's node counts.
     """
     nodes = face_counts(counts, side)
@@ -61,7 +61,7 @@ def outer_patches(
 
 
 def rectangles(owners: NDArray[np.intp]) -> Iterator[tuple[int, Range]]:
-    """Yield rectangles of cells with the same patch: index of the patch, and index range of the nodes.
+    """Yield rectangles of cells at a side that have the same patch: its index, and index range of the nodes.
 
     Cells at a connection (`JOINED`) are left out. `owners` (n,) or (n, m) is the result of `owners_of`.
     """

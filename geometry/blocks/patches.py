@@ -71,7 +71,7 @@ class Patch:
 
     @property
     def place(self) -> tuple[int, int]:
-        """Number of the index normal to the side, and its value on the side: 0, or -1 for the last."""
+        """The index that is constant on the side (0 is i, 1 j, 2 k), and its value: 0, or -1 for the last."""
         return PLACES[self.side]
 
     @property

@@ -104,18 +104,18 @@ def resample_patches(
     return tuple(moved(patch) for patch in patches)
 
 
-def patches_in_place(had: Boundary, has: Boundary) -> tuple[Patch, ...]:
-    """Return the patches of the boundary `had` for `has`, a boundary with other nodes on the same sides.
+def patches_in_place(old: Boundary, new: Boundary) -> tuple[Patch, ...]:
+    """Return the patches of the boundary `old` for the boundary `new`, with other nodes on the same sides.
 
     Each end of a patch moves to the node that is nearest in terms of relative arc length.
     """
 
     def moved(patch: Patch) -> Patch:
-        before, after = (arc_parts(getattr(edges, patch.side)) for edges in (had, has))
+        before, after = (arc_parts(getattr(edges, patch.side)) for edges in (old, new))
         start, stop = (int(np.abs(after - before[k]).argmin()) for k in (patch.start, patch.stop))
         return _with_cell(patch, start, stop, len(after) - 1)
 
-    return tuple(moved(patch) for patch in had.patches)
+    return tuple(moved(patch) for patch in old.patches)
 
 
 def _with_cell(patch: Patch, start: int, stop: int, last: int) -> Patch:

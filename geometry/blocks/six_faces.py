@@ -86,10 +86,10 @@ class SixFaces:
         """Return a view of the nodes (n, 3) of the edge that two faces share, as stored in face `side`."""
         return edge_of(getattr(self, side), side, second)
 
-    def steps_inwards(self, side: Side, second: Side) -> Floats:
-        """Return the steps (n, 3) between two rows of the face at `side`, from lower to higher index.
+    def steps_at_edge(self, side: Side, second: Side) -> Floats:
+        """Return vectors (n, 3) between the last two rows of the face `side` at its edge with face `second`.
 
-        The rows are the edge that this face shares with the face `second`, and the row next to this edge.
+        They point towards the row of the higher index.
         """
         axis, end = PLACES[second]
         rows = np.moveaxis(getattr(self, side), axis - (axis > PLACES[side][0]), 0)
@@ -167,7 +167,7 @@ def edges() -> Iterator[tuple[Side, Side]]:
 
 
 def edge_of(face: Floats, side: Side, second: Side) -> Floats:
-    """Return a view of the nodes (n, 3) of `face`, on `side`, at its edge with the face on `second`."""
+    """Return a view of the nodes (n, 3) that `face`, which is on `side`, shares with the face on `second`."""
     axis, end = PLACES[second]
     return np.asarray(np.moveaxis(face, axis - (axis > PLACES[side][0]), 0)[end])
 

@@ -231,7 +231,7 @@ def rotated(grid: Grid, rotation: Motion) -> Grid:
 
 
 def turned(grid: Grid) -> Grid:
-    """Return `grid` with xi and eta exchanged: node (i, j) of each block becomes node (j, ni-1-i).
+    """Return `grid` with xi and eta exchanged and one reversed: node (i, j) of a block becomes (j, ni-1-i).
 
     Raises InputError: an O or C grid, whose xi runs around the body by definition.
     """

@@ -49,11 +49,11 @@ class Corner:
 
 @dataclass(frozen=True)
 class Lift:
-    """The conformal map between the plane z around a body and a strip w = psi + i phi (see `lift_body`).
+    """The conformal map from the plane z around a body to a strip w = psi + i phi (see `lift_body`).
 
-    `centre` and `quarter` are the parameters of Joukowski's map, which comes first. `corners` are the maps
-    that straighten corners of the body. `pole` is the centroid of the wall after all these maps. `phase` is
-    subtracted from phi, so that the first wall node is at 0. Attributes are numbers or torch tensors.
+    Joukowski's map z = centre + quarter (zeta + 1/zeta) comes first. `corners` are the maps that straighten
+    corners of the body. `pole` is the centroid of the wall after all these maps. `phase` is subtracted from
+    phi, so that the first wall node is at 0. Attributes are numbers or torch tensors.
     """
 
     centre: Any
@@ -63,14 +63,14 @@ class Lift:
     phase: Any
 
     def to_plane(self, w: Any, xp: Any = np) -> Any:
-        """Return the points of the plane for points w (of any shape) of the strip; `xp` is numpy or torch."""
+        """Return the points around the body that are mapped to `w` (any shape); `xp` is numpy or torch."""
         zeta = self.pole + functions_of(xp).exp(w + 1j * self.phase)
         for corner in reversed(self.corners):
             zeta = corner.restore(zeta)
         return self.centre + self.quarter * (zeta + 1.0 / zeta)
 
     def to_strip(self, z: Complexes) -> Complexes:
-        """Return the points w (n,) of the strip, without jumps, for points `z` (n,) around the body."""
+        """Return the images w (n,) of points `z` (n,) around the body; Im w does not jump by 2 pi."""
         return _native.lift_to_strip(self, np.ascontiguousarray(z, complex))
 
 
@@ -84,8 +84,8 @@ def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, 
     """Return the conformal map of a body, its wall (n,) mapped to the strip, and the indices of its corners.
 
     `wall` (n,) runs counter-clockwise from the trailing edge, without its repeated first node. The corners of
-    a blunt trailing edge are straightened one after another, with `swap` in the opposite order. The result
-    for a mirrored body is the mirrored result if `swap` is inverted.
+    a blunt trailing edge are straightened one after another, with `swap` in the opposite order. Two bodies
+    that are mirror images have mirrored results if `swap` is set for one of them.
 
     Raises InputError: fewer than 8 nodes, or a wall that does not wind once around its middle.
     """

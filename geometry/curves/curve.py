@@ -22,7 +22,7 @@ _EDGES = np.arange(_STEPS + 1) / _STEPS  # ends of the parts
 
 
 class Curve:
-    """A smooth curve with one cubic in each interval (`geometry.curves.spline`), bitwise through its points.
+    """A smooth curve exactly through given points, with a cubic in each interval (`geometry.curves.spline`).
 
     An open curve has at least 2 `points` (n, 2), a closed curve at least 3. A closed curve may repeat its
     first point at the end. The tangent may jump at `corners` (indices of points); None detects corners.
@@ -107,7 +107,7 @@ class Curve:
 
     @property
     def tables(self) -> tuple[Floats, Floats, Floats, Floats, int]:
-        """Tables of the curve for compiled code."""
+        """For compiled code: cubics, arc lengths of parts, dt/ds at starts and at ends, parts per cubic."""
         return self._cubic, self._table, self._rate_start, self._rate_stop, _STEPS
 
     def _locate(self, s: Floats) -> tuple[Indices, Floats]:

@@ -44,7 +44,7 @@ def frames_along(
 
 
 def turned(y_axes: Floats, tangents: Floats, angle: Floats) -> Floats:
-    """Return y axes (n, 3) rotated about tangents (n, 3) by angles (n,) in radians, from x towards y."""
+    """Return y axes (n, 3) rotated about tangents (n, 3) by angles (n,) in radians, right-handed."""
     x_axes = np.cross(y_axes, tangents)
     return cos(angle)[:, None] * y_axes - sin(angle)[:, None] * x_axes
 

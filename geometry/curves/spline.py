@@ -23,9 +23,8 @@ def spline_slopes(
     """Return the slopes (intervals, 2) of a curve at the start and at the end of each interval.
 
     Between `corners` (indices of points) the curve is a cubic spline, which is limited to avoid overshoots
-    (see `limited`). Next to a corner it is a parabola. Intervals of the curve in the mask `tangent` (n,) are
-    straight lines, to which the neighbouring splines are tangent. A closed curve does not repeat its first
-    point.
+    (see `limited`). Its cubics beside a corner are parabolas. Intervals in the mask `tangent` (n,) are
+    straight lines, to which neighbouring splines are tangent. A closed curve does not repeat its first point.
     """
     if tangent is not None and tangent.any():
         return _beside_lines(points, corners, tangent)
@@ -106,9 +105,9 @@ def open_slopes(
     """Return the slopes (intervals, d) at the start and at the end of each interval of an open curve.
 
     A spline joins each of the `stops` (indices of points, with the first and the last) to the next. `chord`
-    (intervals, d) are the vectors between points, `h` (intervals,) their lengths. `held` (2, intervals, d)
-    has slopes at the start and the end of each interval. Where a spline starts or ends, this slope is kept if
-    it is finite; otherwise the outer interval is a parabola.
+    (intervals, d) are the vectors between points, `h` (intervals,) their lengths. A spline starts with the
+    slope in ``held[0]`` (intervals, d) and ends with that in ``held[1]``. Where this is not finite, its first
+    or last interval is a parabola.
     """
     delta = chord / h[:, None]
     doubled = np.zeros(len(h) + 1, dtype=np.intp)
@@ -158,7 +157,7 @@ def periodic_slopes(chord: Floats, h: Floats) -> Floats:
 def limited(
     points: Floats, start: Floats, stop: Floats, *, closed: bool, corners: Indices
 ) -> tuple[Floats, Floats]:
-    """Return slopes (intervals, 2) at the `start` and `stop` of each interval, limited to avoid overshoots.
+    """Return the slopes `start` and `stop` (intervals, 2) of each interval, limited to avoid overshoots.
 
     Tangents stay near the directions of the two chords that meet at a point. At `corners` (indices of
     points), the curve has one tangent before and one after the point. A closed curve does not repeat its

@@ -117,8 +117,8 @@ class Domain:
     def layered_loops(self) -> range:
         """Indices of the loops that get layers if no wall is named: the holes.
 
-        In a domain without holes, the outer loop gets layers if the name of one of its parts, such as inlet,
-        shows that this part is no wall.
+        In a domain without holes, it is the outer loop if the name of a part of it, such as inlet, shows that
+        this part is no wall; its other parts are then taken as walls.
         """
         alone = len(self.loops) == 1 and not self.periodic
         channel = alone and not all(map(may_be_wall, self.loops[0].names))

@@ -24,8 +24,8 @@ def wall_gaps(domain: Domain, loop: Loop, arcs: Floats) -> Floats:
     """Return distances (n,) from points of a loop, at arc lengths `arcs` (n,), to the nearest wall in front.
 
     A wall of any loop is in front if its direction deviates from the inward normal by at most 53 degrees.
-    Without a wall in front, the distance is infinite. Two walls that meet at a corner with two cells are not
-    in front of each other.
+    Without a wall in front, the distance is infinite. The two walls at a corner where two cells of a grid
+    meet are not in front of each other.
     """
     walls, points, along = wall_points(domain.loops), loop.at(arcs), loop.tangent(arcs)
     gaps = gaps_in_front(walls, points, along)

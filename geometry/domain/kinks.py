@@ -15,9 +15,9 @@ APART = 0.01
 
 
 def with_kinks(domain: Domain) -> Domain:
-    """Return the domain with a corner at each kink of its polygons (see `find_kinks`); two cells meet there.
+    """Return the domain with a corner at each kink of its polygons (see `find_kinks`).
 
-    Each kink then has a node, and no cell edge cuts it off.
+    A grid then has a node there, at which two cells meet, and no cell edge cuts the kink off.
     """
     held = 1 if domain.periodic else 0  # periodic sides are matched already
     loops = domain.loops

@@ -114,7 +114,7 @@ class Loop:
         return self.names[stretch]
 
     def steps(self, arcs: Floats, ways: Floats | float) -> Floats:
-        """Return the signed arc lengths (n - 1,) between successive nodes, given at `arcs` (n,) on the loop.
+        """Return the signed arc lengths (n - 1,) from node to node; `arcs` (n,) are the nodes' arc lengths.
 
         `ways` is 1 if the nodes are in the loop's direction, -1 if they are in the opposite direction.
         """

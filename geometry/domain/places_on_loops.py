@@ -32,7 +32,7 @@ def arc_at(loop: Loop, place: Floats) -> Floats:
 
 
 def cells_at(loop: Loop, place: Floats) -> Indices:
-    """Return the number (n,) of cells that should meet at places (n,) of a loop; 0 except at corners."""
+    """Return how many cells should meet at places (n,) of a loop; 0, for any number, except at corners."""
     number = np.floor(place).astype(np.intp)
     if not loop.corners:
         return np.zeros(len(place), dtype=np.intp)

@@ -81,9 +81,9 @@ def arch(height: float, ni: int, nj: int) -> Boundary:
 
 
 def hexagon(angle: float, ni: int, nj: int) -> Boundary:
-    """Case 2: return a square with a kink of `angle` degrees in its top and in its bottom.
+    """Case 2: return a unit square whose top and bottom have a kink with the interior angle `angle`, degrees.
 
-    The kinks are at (1/2, 1 + h) and (1/2, -h) with h = 1/(2 tan(angle/2)); angles are measured inside.
+    The kinks are at (1/2, 1 + h) and (1/2, -h) with h = 1/(2 tan(angle/2)).
     """
     h = 0.5 / math.tan(math.radians(0.5 * angle))
     south = polyline([(0.0, 0.0), (0.5, -h), (1.0, 0.0)], ni)
@@ -94,9 +94,9 @@ def hexagon(angle: float, ni: int, nj: int) -> Boundary:
 def wrench(opening: float, ni: int, nj: int) -> Boundary:
     """Case 3: return a unit square with a notch of width `opening` in its top, like the jaw of a wrench.
 
-    The notch is centred at x = 1/2 and reaches from y = 1 down to 0.6. The tips on both sides are at y =
-    1.15, 0.05 beside the notch. Elliptic grids fold at the lower corners of the notch. The indices of nodes
-    at corners do not depend on `opening`.
+    The notch is centred at x = 1/2 and reaches from y = 1 down to 0.6. On both sides, at a distance of 0.05
+    from it, the top rises to a tip at y = 1.15. Elliptic grids fold at the lower corners of the notch. The
+    indices of nodes at corners do not depend on `opening`.
     """
     south, north = polyline([(0.0, 0.0), (1.0, 0.0)], ni), polyline(_jaw(opening), ni, like=_jaw(0.3))
     return _upright(south, north, nj, f"wrench-{opening:.6g}")

@@ -34,7 +34,7 @@ class Layout:
         Number of rows of cells, counted from the south side, that are layers at a wall; the key is the index
         of the block. Optimisations do not move these rows.
     fronts : tuple of int, optional
-        Indices of the loops that are outer edges of layers whose cells are added later.
+        Indices of loops of the domain that are outer edges of layers; cells of the layers are added later.
     """
 
     mesh: QuadMesh

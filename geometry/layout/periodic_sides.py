@@ -34,7 +34,7 @@ def following(mesh: QuadMesh) -> Indices:
 
 
 def with_tied_sides(mesh: QuadMesh) -> QuadMesh:
-    """Return the mesh with nodes of periodic sides tied in pairs; each pair moves to its mean position."""
+    """Return the mesh with nodes of periodic sides tied in pairs; both move, to differ by just the period."""
     if not mesh.domain.periodic:
         return mesh
     places, nodes = mesh.places, mesh.nodes.copy()
@@ -48,7 +48,7 @@ def with_tied_sides(mesh: QuadMesh) -> QuadMesh:
 
 
 def matched_nodes(mesh: QuadMesh) -> Floats:
-    """Return the nodes (n, 2); each second periodic side becomes exactly equal to the shifted first side."""
+    """Return the nodes (n, 2); of each two periodic sides, the second becomes exactly the first, shifted."""
     nodes, sides = mesh.nodes.copy(), sides_of(mesh)
     for _, first, _ in sides:
         nodes[first] = rounded(nodes[first], mesh.domain)

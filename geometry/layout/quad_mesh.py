@@ -16,7 +16,7 @@ _PROJECTIONS = 3  # onto tangents of a loop, which converge quadratically
 
 @dataclass(frozen=True, eq=False)
 class Places:
-    """Positions of the nodes of a mesh on the boundary of its domain; each array has one entry per node."""
+    """Where on the boundary of its domain the nodes of a mesh are; each array has one entry per node."""
 
     loop: Indices
     """Number of the loop, -1 inside."""
@@ -44,7 +44,7 @@ class Places:
         return np.asarray(on[np.argsort(self.arc[on], kind="stable")])
 
     def take(self, nodes: Indices) -> Places:
-        """Return the places of the nodes with indices `nodes`, without periodic partners."""
+        """Return the entries of the nodes with indices `nodes`, but with no periodic partner (-1)."""
         cleared = np.full(len(nodes), -1, dtype=np.intp)
         return Places(self.loop[nodes], self.arc[nodes], self.cells[nodes], cleared)
 
@@ -120,7 +120,7 @@ class QuadMesh:
 
     @cached_property
     def irregular(self) -> Bools:
-        """Whether each node (n,) is irregular: inside, not 4 quads meet there; on the boundary, not 2."""
+        """Whether each node (n,) is irregular: not of 4 quads inside, or not of 2 quads on the boundary."""
         return self.valence != np.where(self.wall_nodes, 2, 4)
 
     @cached_property
@@ -131,7 +131,7 @@ class QuadMesh:
     def aspects(self, lengths: Floats) -> Floats:
         """Return the aspect ratios (m,) of the quads, for edges with the given `lengths` (e,).
 
-        The aspect ratio is sqrt(l12 l30 / (l01 l23)); lab is the length of the side from corner a to b.
+        The ratio is sqrt(b d / (a c)) with the lengths a, b, c, d of the sides, from the first node onwards.
         """
         sides = lengths[self.edge_of]
         return np.asarray(np.sqrt(sides[:, 1] * sides[:, 3] / (sides[:, 0] * sides[:, 2])))
@@ -151,7 +151,7 @@ class QuadMesh:
         return np.asarray(known[off.argmin(axis=1)])
 
     def beside_partners(self, nodes: Floats) -> Floats:
-        """Return `nodes` (n, 2), with nodes on one periodic side moved to their partners plus the shift."""
+        """Return `nodes` (n, 2), in which each with a periodic partner is the partner moved by the period."""
         images = np.flatnonzero(self.places.partner >= 0)
         if images.size and self.domain.periodic:
             nodes = nodes.copy()

@@ -53,10 +53,10 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
     the polygon is open), and five times as much as at the next points on both sides. So both ends of an
     oblique base (blunt trailing edge) are corners.
 
-    The round end of a thin body, if given by few points, can turn by up to 155 degrees at a point that is no
-    corner. Near a round end, the thickness of the body grows like the square root of the distance, near an
-    edge linearly; this tells them apart (`growth_exponent`). A closed polygon of at most `few` points is not
-    a sampled curve; any of its points may be a corner.
+    An exception is the round end of a thin body given by few points: it is no corner, even if it turns by up
+    to 155 degrees. Near a round end, the thickness of the body grows like the square root of the distance,
+    near an edge linearly; this tells them apart (`growth_exponent`). A closed polygon of at most `few` points
+    is not a sampled curve; any of its points may be a corner.
     """
     angle = np.abs(turning(points, closed=closed))
     if not angle.max() > KINK:

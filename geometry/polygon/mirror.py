@@ -26,10 +26,10 @@ def farthest(wall: Complexes) -> tuple[int, int]:
 def handedness(wall: Complexes, far: Complexes) -> tuple[int, Axis]:
     """Return a sign (1, -1 or 0) that tells a body from its mirror image, and the axis of the mirror.
 
-    The body is given by two curves, `wall` (n,) and `far` (n,). The axis is a point, the first node of
-    `wall`, and the square of a direction: to the middle between the two nodes that are farthest from it. The
-    sign is that of the largest deviation of `wall` from symmetry, or of `far` if `wall` is symmetric, or 0 if
-    both are.
+    The body is given by two curves of complex numbers, `wall` (n,) and `far` (n,). The axis runs from the
+    first node of `wall` to the middle between the two nodes farthest from this node. It is returned as this
+    node and the square of its direction. The sign is that of the largest deviation of `wall` from symmetry,
+    or of `far` if `wall` is symmetric, or 0 if both are.
     """
     a, b = farthest(wall)
     along = 0.5 * (wall[a] + wall[b]) - wall[0]

@@ -20,9 +20,9 @@ _ROUNDING = np.radians(0.1)  # turns of rounded coordinates
 def find_kinks(points: Floats, *, few: int = FEW) -> Indices:
     """Return the ascending indices of kinks of an open polygon `points` (n, 2); corners may be among them.
 
-    A turn of more than 2 degrees is a kink if it is 20 times as large as both neighbouring turns. A polygon
-    of at most `few` points may zigzag: two successive turns are in opposite directions, and both are at least
-    half of the largest turn. All its turns of more than 2 degrees are then kinks.
+    A turn of more than 2 degrees is a kink if it is 20 times as large as both neighbouring turns. All turns
+    of more than 2 degrees are kinks in a zigzag: a polygon of at most `few` points with two successive turns
+    in opposite directions, both at least half of the largest turn.
     """
     turn = turning(points)
     size = np.abs(turn)
@@ -37,9 +37,10 @@ def find_kinks(points: Floats, *, few: int = FEW) -> Indices:
 def straight_intervals(points: Floats, corners: Indices) -> Bools:
     """Return which intervals (n,) of a closed polygon `points` (n, 2) are straight lines.
 
-    A straight interval is at least `LONG` times as long as a neighbour from which no corner separates it;
-    `corners` are indices of points. At both ends, the polygon turns by at most `EXPLAINED` times the angle
-    between tangent and chord of the circle through the next three points.
+    A straight interval is at least `LONG` times as long as the one before or after it, with no corner between
+    the two (`corners` are indices of points). At each end that is no corner, the polygon turns by at most
+    `EXPLAINED` times the angle between tangent and chord, at this end, of the circle through it and the two
+    points beyond.
     """
     turn, joined = turning(points, closed=True), np.ones(len(points), dtype=bool)
     turn[corners], joined[corners] = 0.0, False

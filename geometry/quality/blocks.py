@@ -62,11 +62,11 @@ class BlockFigures(BlockCounts):
 LINES = ("growth_inside", "growth_across", "bend_inside", "bend_across")  # fields of `Lines` in reports
 
 
-def block_figures(grid: Grid, quality: Quality | None = None, run: Lines | None = None) -> BlockFigures:
+def block_figures(grid: Grid, quality: Quality | None = None, known: Lines | None = None) -> BlockFigures:
     """Return the figures of a multi-block grid.
 
-    `quality` is the quality of a volume grid, if it has been measured. If it has no percentiles, the figures
-    have none. `run` are the figures of grid lines, if known already.
+    `quality` (of a volume grid) and `known` (figures of grid lines) may be given if they have been measured.
+    With a `quality` that has no percentiles, the result has none.
     """
     if grid.form == "volume":
         from meshonet.geometry.quality.volumes import measure_volumes
@@ -78,12 +78,12 @@ def block_figures(grid: Grid, quality: Quality | None = None, run: Lines | None 
         sizes = tuple(block.counts for block in grid.blocks)
         numbers = shared_nodes(sizes, grid.connections, periodic=True)
         count = 1 + max(int(number.max()) for number in numbers)
-        if not run or p99 is not None:
-            run = solid_lines(grid, percentiles=p99 is not None)
-        return BlockFigures(sizes, None, count, len(grid.connections), angles, run)
+        if not known or p99 is not None:
+            known = solid_lines(grid, percentiles=p99 is not None)
+        return BlockFigures(sizes, None, count, len(grid.connections), angles, known)
     nodes = vertices(grid)
     counts, count = block_counts(grid, nodes), len(nodes.valence)
-    more = count, len(grid.connections), deviation(grid), run or lines(grid, nodes)
+    more = count, len(grid.connections), deviation(grid), known or lines(grid, nodes)
     return BlockFigures(counts.sizes, counts.irregular, *more)
 
 

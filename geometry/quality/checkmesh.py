@@ -23,7 +23,7 @@ from meshonet.geometry.quality.metrics import FACE_NAMES
 
 @dataclass(frozen=True)
 class FaceMeasures:
-    """Statistics of each measure of faces, and the cell with the largest value; None if no face has it.
+    """Statistics of each measure of faces and the cell of its largest value; None for a measure of no face.
 
     A cell is (i, j) in a single planar block, (block, i, j) in several, and (block, i, j, k) in volumes.
     """

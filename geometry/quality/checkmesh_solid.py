@@ -34,7 +34,7 @@ class Cells:
 
 
 def solid_faces(grid: Grid, cells: Sequence[Cells]) -> Iterator[Values]:
-    """Yield place, angle and skewness of groups of faces; `cells` has the measures of cells of each block."""
+    """Yield groups of faces: cell of the first one, non-orthogonality (None at the boundary), skewness."""
     for number, (block, own) in enumerate(zip(grid.blocks, cells, strict=True)):
         nodes = np.moveaxis(block.nodes, -1, 0)
         for axis in range(3):

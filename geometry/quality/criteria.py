@@ -25,11 +25,11 @@ class Criteria:
 
     @property
     def percentiles(self) -> bool:
-        """Whether a gate has a limit on a percentile of a metric."""
+        """Whether one of the limits is on a percentile of a metric."""
         return any(gate.statistic in ("p01", "p99") for gate in self.gates)
 
     def judge(self, grid: Grid, quality: Quality) -> Judgement:
-        """Return the judgement of `grid`. Raises InputError: a gate on a figure that the grid lacks."""
+        """Return the judgement of `grid`. Raises InputError if a limit is on a quantity that it lacks."""
         from meshonet.geometry.quality.figures import Figures
         from meshonet.geometry.quality.profiles import profile_report
         from meshonet.geometry.quality.report import QualityReport

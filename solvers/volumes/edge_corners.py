@@ -76,7 +76,7 @@ def _jacobians(faces: SixFaces, side: Side, second: Side) -> Floats:
     axis, other = PLACES[side][0], PLACES[second][0]
     edge = faces.edge(side, second)
     # off the edge, in each of the two faces, along the direction that the other face is an end of
-    vectors = {other: faces.steps_inwards(side, second), axis: faces.steps_inwards(second, side)}
+    vectors = {other: faces.steps_at_edge(side, second), axis: faces.steps_at_edge(second, side)}
     along = ({0, 1, 2} - {axis, other}).pop()
     step = np.diff(edge, axis=0)
     values = []

@@ -41,7 +41,7 @@ def _heights(faces: SixFaces, face: Side) -> Floats:
     axis = PLACES[face][0]
     first, second = (each for each in range(3) if each != axis)
     beside = [side for side in FACES if PLACES[side][0] != axis]
-    rims = {side: log(norms(faces.steps_inwards(side, face))) for side in beside}
+    rims = {side: log(norms(faces.steps_at_edge(side, face))) for side in beside}
     west, east = (rims[side] for side in FACES if PLACES[side][0] == first)  # along the second direction
     south, north = (rims[side] for side in FACES if PLACES[side][0] == second)
     u = np.linspace(0.0, 1.0, faces.counts[first])[:, None]
