@@ -54,7 +54,7 @@ class SparsePattern:
         return int(self.arrays[4][-1])
 
     def matrix(self, values: Floats) -> "SparseMatrix":
-        """Return the matrix with the entries `values` (m,), for a pattern with one unknown in each row."""
+        """Return the matrix with the entries `values` (m,), for a pattern with a `block` of 1."""
         summed = np.bincount(self.slot, np.asarray(values, dtype=np.float64), self.entries)
         return SparseMatrix(self, np.asarray(summed, dtype=np.float64))
 
@@ -108,7 +108,7 @@ class Factor:
         return x.reshape(np.shape(right))
 
     def refine(self, matrix: SparseMatrix, right: Floats, steps: int) -> Floats:
-        """Return the solution for a `matrix` close to A by `steps` steps of iterative refinement."""
+        """Return the solution of ``matrix x = right`` by iterative refinement; `matrix` is close to A."""
         x = self.solve(right)
         for _ in range(steps):
             x += self.solve(right - matrix.times(x))

@@ -28,7 +28,7 @@ Row = tuple[Mapping[int, float], float, float]
 
 
 def difference(first: Iterable[int], second: Iterable[int], low: float = 0.0, high: float = 0.0) -> Row:
-    """Return a constraint: sum of numbers `first` - sum of numbers `second` is from `low` to `high`."""
+    """Return the constraint ``low <= sum(x[i], i in first) - sum(x[i], i in second) <= high``."""
     row: dict[int, float] = {}
     for run, sign in ((first, 1.0), (second, -1.0)):
         for number in run:

@@ -15,7 +15,7 @@ _FROM = -0.25  # least place: u = 0, the leading edge, is between others
 
 @dataclass(frozen=True, eq=False)
 class ChannelLines:
-    """Lines across the channel between two blades, nearly normal to the layers; means over sections."""
+    """Lines across the channel between blades, nearly normal to their layers, averaged over sections."""
 
     upper: Floats  # (n,) places u (see `SectionPlane`) on the upper side of a blade, from 0 to 0.5
     lower: Floats  # (n,) 1 - u of the opposite places, on the lower side of the next blade
@@ -36,11 +36,11 @@ class ChannelLines:
         return cls(upper, upper, squares)
 
     def links(self, u: Floats, start: Floats, pairs: Indices, weight: float) -> PlaceLinks:
-        """Return conditions on `u` (k,) by which lines across the channel lean no more than for `start` (k,).
+        """Return conditions that keep lines across the channel from leaning more than for nodes at `start`.
 
-        `u` and `start` are places from 0 to 1 around a blade. Lean is the tangent of the angle between a line
-        and the normal of the blade's layers. Its increase is linearised at `u` and multiplied by `weight`.
-        Each line joins the two nodes with indices `pairs` (p, 2).
+        `u` and `start` (k,) are places of nodes, from 0 to 1 around a blade. Each line joins the two nodes
+        with indices `pairs` (p, 2). Its lean is the tangent of the angle between it and the normal of the
+        blade's layers. The increase in lean is linearised at `u` and multiplied by `weight`.
         """
         one = u[pairs[:, 0]]
         slope = np.interp(one, self.upper, np.gradient(self.lower, self.upper))
@@ -50,14 +50,14 @@ class ChannelLines:
         return PlaceLinks(pairs, factors, scale * aside - (factors * u[pairs]).sum(axis=1))
 
     def leaning(self, u: Floats, pairs: Indices) -> float:
-        """Return the mean square lean (see `links`) of lines that join `pairs` of nodes at places `u`."""
+        """Return the mean square lean (see `links`) of lines between `pairs` (p, 2) of nodes at `u` (k,)."""
         return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
     def weights(self, pairs: Floats) -> Floats:
-        """Return the weights (p,) of p lines that join places `pairs` (p, 2) on neighbouring blades."""
+        """Return factors (p,) from the square of `aside` to that of the lean, for pairs of places (p, 2)."""
         return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
 
     def aside(self, pairs: Floats) -> Floats:
-        """Return u' - u2 (p,) for pairs of places u1, u2 (p, 2); u' is opposite u1 across the channel."""
+        """Return (p,) the place opposite the first of each pair of places (p, 2), minus the second place."""
         upper, lower = (wrapped(each, _FROM) for each in (pairs[:, 0], 1.0 - pairs[:, 1]))
         return np.asarray(lower - np.interp(upper, self.upper, self.lower))

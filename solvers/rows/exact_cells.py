@@ -14,12 +14,12 @@ def exact_in_corners(
     nodes: Floats, begins: tuple[Floats, Floats], sizes: tuple[float, Floats],
     in_space: Callable[[Floats], Floats],
 ) -> Floats:  # fmt: skip
-    """Return nodes (..., 3), each moved by Newton's method to given distances from two points of its own.
+    """Return `nodes`, each moved along its lines to two points until its distances from them are as given.
 
     Parameters
     ----------
     nodes : (..., 3) nodes in any coordinates.
-    begins : (..., 3) first and second point for each node, in the same coordinates.
+    begins : (..., 3) first point, and (..., 3) second point for each node, in the same coordinates.
     sizes : distances from the first points (a number) and from the second points (an array).
     in_space : maps coordinates to x, y, z.
     """

@@ -69,7 +69,7 @@ def gap_ends(row: Row, places: SpanPlaces, zone: Zone, first: float, growth: flo
 def gap_blocks(
     row: Row, ends: GapEnds, around: Indices, outline: Floats, zone: Zone, growth: float
 ) -> GapBlocks:
-    """Return the blocks in the gap between the blade and hub or casing, given their nodes at both ends.
+    """Return the blocks in a gap between blade and hub or casing, from its nodes at both `ends` of the gap.
 
     `around` (k,) are the indices of the blade's nodes in a section, clockwise. `outline` (levels, k, 3) has
     s, theta, h of these nodes (along, around and across the channel) on each level along the span.

@@ -49,8 +49,8 @@ class GapFill:
 def outline_sides(count: int, lead: int, aside: int) -> list[Indices]:
     """Return the node indices of the four sides into which a blade's outline of `count` nodes is divided.
 
-    Side 1 is around the trailing edge, side 3 around the leading edge, node `lead`. Each of them has `aside`
-    cells before and `aside` cells after its edge. Sides 0 and 2 are between them.
+    Side 1 has the trailing edge in its middle, side 3 the leading edge, which is node `lead`. These sides
+    have 2 * `aside` cells each. Sides 0 and 2 are between them.
     """
     m, half = aside, count // 2
     cuts = [m, half - m, half + m, count - m, count + m]

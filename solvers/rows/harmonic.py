@@ -11,11 +11,11 @@ class HarmonicMoves:
     """Displacements of nodes that are harmonic except where prescribed.
 
     A free node moves by the mean displacement of its neighbours, weighted by inverse square distances. Both
-    nodes of a periodic pair move alike. One object serves all meshes of the same quads and prescribed nodes.
+    nodes of a periodic pair move alike. The method `of` applies to all meshes with the same connectivity.
 
     Parameters
     ----------
-    mesh : one of the meshes.
+    mesh : a mesh with this connectivity.
     prescribed : (n,) mask of the nodes with prescribed displacements.
     """
 

@@ -77,7 +77,7 @@ class LayerColumns:
 
 @dataclass(frozen=True, eq=False)
 class KeySection:
-    """A section of a row with computed nodes; nodes between such key sections are interpolated."""
+    """A section of a blade row whose nodes are computed; nodes between key sections are interpolated."""
 
     plane: SectionPlane  # the section as a plane cascade
     layout: Layout  # its blocks in (m', theta), with the domain of the middle section
@@ -104,7 +104,7 @@ def planned(
     Parameters
     ----------
     coarse : result of `coarse_section` for the middle section; None: it is computed.
-    longest : greatest length of the straight rows of cells at inlet and at outlet, by loop index.
+    longest : greatest length in all sections of the straight grid lines at `INLET`, `OUTLET` (the keys).
     wake : as in `SectionPlan`.
     gaps : whether the blade ends in a gap at the hub, and at the casing.
     """

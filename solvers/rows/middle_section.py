@@ -31,7 +31,7 @@ _TRIES, _NEAR = 4, 0.03  # largest number of choices of counts; sufficient relat
 
 
 def coarse_section(plane: SectionPlane, *, early: bool = True) -> Layout:
-    """Return a coarse block layout of a section; if `early`, nodes are at the blade's corners from the start.
+    """Return a coarse block layout of a section; with `early`, initial nodes are at the blade's corners.
 
     Raises InputError if there is no room for inlet or outlet; NoValidGridError if cells are folded.
     """
@@ -45,7 +45,7 @@ def middle_section(
 
     Parameters
     ----------
-    longest : by loop index, greatest length of the straight rows at inlet and outlet in all sections.
+    longest : greatest length in all sections of the straight grid lines at `INLET`, `OUTLET` (the keys).
     coarse : result of `coarse_section`; None: it is computed.
 
     Raises NoValidGridError if cells are folded.

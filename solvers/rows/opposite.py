@@ -14,9 +14,9 @@ FARTHEST = 0.2
 def opposite_places(places: Floats, pairs: Indices, lines: ChannelLines) -> Floats:
     """Return places u (k,) of nodes clockwise around a blade; for each node at u there is one at 1 - u.
 
-    u is 0 at the leading edge, 0.5 at the trailing edge and 1 at the leading edge again. k is even. Each of
-    `pairs` (p, 2) is a node of the upper and a node of the lower side, which a grid line across the channel
-    joins; the first pair is nearest to the leading edge. These grid lines deviate from `lines` as little as
+    u is 0 at the leading edge, 0.5 at the trailing edge and 1 at the leading edge again. k is even. `pairs`
+    (p, 2) are a node on the upper side, and the node on the next blade's lower side to which a grid line
+    leads. The first pair is nearest to the leading edge. These grid lines deviate from `lines` as little as
     possible. If possible, no node moves farther than `FARTHEST`.
     """
     both = _both_sides(places)

@@ -41,8 +41,8 @@ class Rise:
         Parameters
         ----------
         row, zone, blade : the row, and the height ranges (zones) of the gap and of the blade.
-        around : positions u around the blade of the k columns, as functions of the height.
-        lines : s (along the channel) and theta of all k * (rows + 1) nodes, as functions of the height.
+        around : places (0 to 1) around the blade of k grid lines through its layers, by height.
+        lines : s (along the channel) and theta of all k * (layers + 1) nodes on these lines, by height.
         """
         end, up, width = (blade.high, 1.0, row.tip_gap)
         if zone.low == 0.0:
@@ -59,7 +59,7 @@ class Rise:
         return replace(self, deep=self.deep[part], moves=self.moves[part])
 
     def shares(self, heights: Floats) -> Floats:
-        """Return which fractions (levels, k) of the displacements `moves` apply at `heights` (levels, k)."""
+        """Return the fractions (levels, k) of `moves` for k grid lines at `heights` (levels, k), 0 to 1."""
         off = self.up * (heights - self.end)
         away = np.where(off > 0.0, off / self.gap, -off / self.deep)
         return np.asarray(smooth_step(np.clip(1.0 - away, 0.0, 1.0)))
@@ -68,7 +68,7 @@ class Rise:
 def rises_of(
     row: Row, zones: Sequence[Zone], around: SpanLines, lines: SpanLines, first: float
 ) -> list[Rise]:
-    """Return the displacements of the layers next to each narrow gap between blade and hub or casing."""
+    """Return the displacements of the blade's wall layers near each narrow gap at hub or casing."""
     blade = next(zone for zone in zones if not zone.gap)
     narrow = [zone for zone in zones if zone.gap and zone.ends[0] < NARROW * first]
     rises = [Rise.of(row, zone, blade, around, lines) for zone in narrow]
@@ -85,7 +85,7 @@ def raise_layers(
     rises : the displacements.
     space : (levels, k, rows, 3) nodes of k columns of layers, at levels (indices along the span).
     heights : (levels, k) heights of the nodes on the blade, 0 at the hub and 1 at the casing.
-    ends : levels at which blade and gaps end; levels next to them; heights of the cells in between.
+    ends : levels at which the blade or a gap ends; a level next to each; wanted distances between the two.
     first : height of first cells at the blade.
     """
     rows = space.shape[2]

@@ -79,7 +79,7 @@ class SectionPlane:
 
     @property
     def thickest(self) -> float:
-        """Place u where the section is thickest; the leading edge is at 0, the trailing edge at 0.5."""
+        """Coordinate u where the section is thickest, from 0 at the leading to 0.5 at the trailing edge."""
         u = np.linspace(0.1, 0.4, 61)
         return float(u[int(modulus(self._opposite(u) - self._opposite(1.0 - u)).argmax())])
 
@@ -104,10 +104,10 @@ class SectionPlane:
         return slope * (self.map.length - float(self.edges[1, 0]))
 
     def ending(self, near: tuple[float, float], thickest: float) -> Self:
-        """Return the section with straight rows of cells at inlet and outlet.
+        """Return the section with straight grid lines at inlet and outlet.
 
-        The rows begin at the distances `near` (in pitches) before and behind the blade with its layers. The
-        blade is thickest at the place `thickest`, from 0 at the leading to 0.5 at the trailing edge.
+        They begin at the distances `near` (in pitches) before and behind the blade with its layers. The blade
+        is thickest at the coordinate u = `thickest`; u is 0 at the leading and 0.5 at the trailing edge.
         """
         one, other = self._opposite(np.array([thickest, 1.0 - thickest]))
         centre = complex(0.5 * (one + other))
@@ -136,7 +136,7 @@ class SectionPlane:
         return np.interp(np.mod(arcs, self._walls[-1]), self._walls, np.append(self.places, 1.0))
 
     def front_arcs(self, u: Floats) -> Floats:
-        """Return arc lengths (n,) on the outer edge of the layers, opposite places `u` (n,) on the blade."""
+        """Return arc lengths (n,) on the outer edge of the layers where lines from places `u` (n,) end."""
         ring = self.cascade.ring
         length, start = self._walls[-1], ring.arcs[0]
         walls = np.append(ring.arcs, start + length)
@@ -146,7 +146,7 @@ class SectionPlane:
 
     @cached_property
     def across(self) -> tuple[Floats, Floats]:
-        """The arrays `lower` (n,) and `slant` (n,) of `ChannelLines`, for this section only."""
+        """Opposite places (n,) on the next blade, and lean (n,) per offset in u, for `ChannelLines`."""
         front, pitch = self.cascade.ring.front, np.array([0.0, self.cascade.pitch[1]])
         one, other = (front.at(self.front_arcs(u)) for u in (ON_SIDE, 1.0 - ON_SIDE))
         off = ((other + pitch).T[:, None] - one.T[:, :, None]) ** 2
@@ -177,7 +177,7 @@ class SectionPlane:
         return np.interp(points[:, 0], self._stations, _SHARES)
 
     def stations(self, shares: Floats) -> Floats:
-        """Return m' (n,), the coordinate along the flow, at `shares`; the inverse of the method `shares`."""
+        """Return the coordinate m' (n,) along the flow for positions as they are returned by `shares`."""
         return np.interp(shares, _SHARES, self._stations)
 
     def camber(self, shares: Floats) -> Floats:

@@ -53,7 +53,7 @@ def slopes_at_keys(values: Floats) -> Floats:
 
 
 def integrals_at_keys(values: Floats) -> Floats:
-    """Return integrals (k, n, ...) from 0 to each of `key_heights` of polynomials with `values` there."""
+    """Return integrals (k, n, ...) of polynomials from 0 to the k `key_heights`, from their values there."""
     return _times(_integrals(len(values)), values)
 
 

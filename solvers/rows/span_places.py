@@ -31,7 +31,7 @@ _LEAST = 0.35  # smallest ratio of a step between neighbouring nodes to the same
 
 @dataclass(frozen=True, eq=False)
 class SpanPlaces:
-    """Positions u (see `SectionPlane`) of k nodes, clockwise around a blade, as functions of the height."""
+    """Places u of k nodes around a blade, as functions of the height. See `SectionPlane` for u, 0 to 1."""
 
     ends: tuple[Floats, Floats]  # places u (k,) at the hub and at the casing
     gaps: tuple[bool, bool]  # whether the blade ends there in a gap; then each node at u has one at 1 - u
@@ -46,7 +46,7 @@ class SpanPlaces:
         ----------
         planes : all sections along the span.
         places : (k,) places in the middle section, from which the result deviates little.
-        pairs : (p, 2) nodes on upper and lower side that grid lines across the channel join.
+        pairs : (p, 2) a node on the upper side, and its partner on the next blade's lower side.
         gaps : whether there is a gap at the hub, and at the casing.
         """
         corners, half = planes[0].corners, len(planes) // 2
@@ -66,7 +66,7 @@ class SpanPlaces:
         return cls(ends, gaps)
 
     def at(self, height: float) -> Floats:
-        """Return the positions u (k,) of the nodes at a height from 0 at the hub to 1 at the casing."""
+        """Return the nodes' places (k,), 0 to 1 around the blade, at a height from hub (0) to casing (1)."""
         start, end = self.ends
         return np.asarray(np.mod(start + height * wrapped(end - start), 1.0))
 
@@ -83,7 +83,7 @@ class SpanPlaces:
 
 
 def at_corners(places: Floats, corners: Floats) -> Floats:
-    """Return positions `places` (k,) around a blade; the one nearest to each corner (c,) moves there."""
+    """Return `places` (k,) of nodes around a blade after the nearest node has moved to each corner (c,)."""
     out = places.copy()
     out[corner_nodes(places, corners)] = corners
     return out
@@ -154,14 +154,14 @@ def upright(
     ends: tuple[Floats, Floats], free: tuple[bool, bool], planes: Sequence[SectionPlane], pairs: Indices,
     fixed: Bools,
 ) -> tuple[Floats, Floats]:  # fmt: skip
-    """Return places (k,) of nodes around a blade, at hub and casing, changed so that grid lines lean less.
+    """Return places of a blade's nodes, at hub and casing, changed so that lines to the next blade lean less.
 
-    Grid lines cross the channel to the next blade; their lean is their angle to the normal of the layers.
+    These are grid lines across the channel. They lean if they are not normal to the blade's wall layers.
     Nodes stay on their side of the blade. They move only if lines near a free end lean by more than `LEAN`.
 
     Parameters
     ----------
-    ends : given places (k,) at the hub and at the casing.
+    ends : given places (k,), from 0 to 1 around the blade, at the hub and at the casing.
     free : whether places at the hub may move, and whether places at the casing may.
     planes : sections of the blade along the span.
     pairs : (p, 2) the two nodes that each line joins, on the upper side and on the next blade's lower side.

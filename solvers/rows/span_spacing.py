@@ -81,9 +81,9 @@ def smooth_arcs(lengths: Floats, ends: tuple[Floats | float, Floats | float | No
 def smooth_cells(
     length: Floats | float, ends: tuple[Floats | float, Floats | float | None], growth: float, least: int
 ) -> int:
-    """Return the number of cells, at least `least`, with which `smooth_arcs` has ratios up to `growth`.
+    """Return the smallest number of cells with which `smooth_arcs` grow by up to `growth`; it is >= `least`.
 
-    `length` and the cell lengths `ends` are numbers, or (n,) for n lines.
+    `length`, the first and the last cell length `ends` are numbers, or (n,) for n lines. None: any last cell.
     """
     lengths = np.atleast_1d(length)
     for cells in range(max(least, 4), MOST_CELLS):
@@ -115,14 +115,14 @@ def _fourth(values: Floats) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Spacing:
-    """Relative arc lengths of nodes whose cells grow from both ends, tabulated by the length of the line."""
+    """Relative arc lengths of nodes on lines with given end cells, tabulated by the length of the line."""
 
     lengths: tuple[float, float]  # shortest and longest line
     table: Floats  # (cells + 1, m) relative arc lengths at m equally spaced lengths
 
     @classmethod
     def of(cls, lengths: tuple[float, float], ends: Ends, growth: float, cells: int) -> Self:
-        """Return the spacing for line lengths between the two `lengths`; cells grow inwards from `ends`."""
+        """Return the table for lines from ``lengths[0]`` to ``lengths[1]`` long, with the cells `ends`."""
         known = np.linspace(*lengths, _LENGTHS if lengths[1] > lengths[0] * (1.0 + 1e-9) else 1)
         return cls(lengths, (two_sided(known, ends, growth, cells) / known[:, None]).T)
 
@@ -147,7 +147,7 @@ class LineArcs:
 
     @classmethod
     def through(cls, samples: Floats) -> Self:
-        """Return the arc lengths of n lines through points (k, n, 3) at the parameters ``key_heights(k)``."""
+        """Return the arc lengths of n lines with the points `samples` (k, n, 3) at the k `key_heights`."""
         speed = norms(slopes_at_keys(samples))
         arcs = integrals_at_keys(speed)
         lengths, wanted = arcs[-1], key_heights(len(samples))[:, None]

@@ -42,7 +42,7 @@ class StackedRow:
 
     Attributes
     ----------
-    columns : (k, rows + 1) nodes of the layers, clockwise, each column from the blade outwards.
+    columns : (k, layers + 1) nodes of k grid lines from the blade through its layers, in clockwise order.
     """
 
     def __init__(self, row: Row, keys: KeyTables, zones: Sequence[Zone], first: float, growth: float) -> None:

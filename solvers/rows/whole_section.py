@@ -22,15 +22,15 @@ _RATIO = 2.0
 def whole_section(
     plane: SectionPlane, beyond: Layout, layers: int, largest: float, longest: Mapping[int, float]
 ) -> Layout:  # fmt: skip
-    """Return the layout of a section of a blade row, with layers and with rows to inlet and outlet.
+    """Return the layout of a section with layers, and with straight grid lines to inlet and outlet.
 
     Parameters
     ----------
     beyond : layout of the blocks beyond the layers, in m' (see `MeridionalMap`) and theta.
     layers : number of layers.
     largest : length of the longest cells.
-    longest : for the loops at inlet and outlet, by index, the greatest length of the rows in any section; it
-        determines the number of cells.
+    longest : greatest length in all sections of the straight grid lines at `INLET`, `OUTLET` (the keys); it
+        determines the number of cells on them.
     """
     cascade = plane.cascade
     mesh = beyond.mesh

@@ -29,7 +29,7 @@ class Zone:
 
 
 def section_cells(zones: Sequence[Zone], cells: int, growth: float) -> int:
-    """Return the number of cells of a section for about `cells` in the blade row, but enough for `growth`."""
+    """Return the cells of one section of a row of about `cells`; more if the growth ratio requires it."""
     return max(_needed(growth), int(cells / _sections(zones)))
 
 

@@ -62,7 +62,7 @@ _SMALL = 0.02  # fraction of the displacement below which a node is reset
 def held_back(grid: Grid, original: Layout, layout: Layout, before: PlaneMeasures) -> Grid | None:
     """Return `grid` with its nodes moved towards those of `layout`, as far as no measure becomes worse.
 
-    `original` is the layout and `before` the measures of `grid`. Returns None if hardly any node would move.
+    `grid` has the layout `original` and the measures `before`. Returns None if hardly any node would move.
     """
     part = np.ones(len(original.mesh.nodes))
     for number in range(_ROUNDS):

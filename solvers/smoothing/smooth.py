@@ -29,9 +29,9 @@ def smooth(grid: Grid, *, slide: bool = False, iterations: int = ITERATIONS) -> 
     """Return `grid` with its nodes at the variational optimum of all blocks; boundary nodes may `slide`.
 
     Two optima are computed, one of them with evened-out spacing between blocks; the better one is used.
-    Displacements are reduced where the largest non-orthogonality or skewness of a face, or the mean deviation
-    from 90 degrees, would become larger. Raises InputError if the blocks are not planar or do not form a
-    domain.
+    Displacements are reduced until none of three values of the grid is larger than before: non-orthogonality
+    and skewness of the worst face, and mean deviation from 90 degrees. Raises InputError if the blocks are
+    not planar or do not form a domain.
     """
     original = layout_of(grid)
     before = measures(grid)

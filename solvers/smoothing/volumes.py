@@ -36,12 +36,12 @@ _AS_GOOD = "the grid is kept as it was: its optimum is no better"
 
 @timed
 def smooth_volumes(grid: Grid, *, iterations: int = ITERATIONS, slide: bool = False) -> Solution:
-    """Return `grid` with its nodes moved to the variational optimum of all blocks.
+    """Return `grid` with its nodes moved to the joint optimum of the cells of all blocks.
 
-    Nodes of outer and periodic sides are bitwise unchanged; with `slide`, nodes of flat patches move in their
-    planes. `iterations` is the largest number of iterations. Displacements are reduced where the smallest
-    scaled Jacobian or the mean deviation from 90 degrees would become worse. Raises InputError if blocks are
-    not volumes or are left-handed.
+    The functional is that of `meshonet.solvers.energy.hex_functional`. Nodes of outer and periodic sides are
+    bitwise unchanged; with `slide`, nodes of flat patches move in their planes. `iterations` is the largest
+    number of iterations. Displacements are reduced if the smallest scaled Jacobian or the mean deviation from
+    90 degrees would become worse. Raises InputError if blocks are not volumes or are left-handed.
     """
     original = hex_mesh_of(grid)
     before = measures(original)

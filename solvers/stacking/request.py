@@ -91,7 +91,7 @@ class StackRequest(VolumeRequest):
 
     @property
     def turn(self) -> Revolution | None:
-        """The revolution that bends the z axis; None without `revolve`."""
+        """The revolution by the angle `revolve` around `axis`; None if no angle is given."""
         return revolution(self.revolve, None, self.axis)
 
     @property

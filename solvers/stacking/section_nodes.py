@@ -45,18 +45,18 @@ class Around:
         return 2 * self.cells + self.base + 1
 
     def law(self, height: float, length: float, nose: float | None = None) -> Callable[[Floats], Floats]:
-        """Return the node distribution along a side of a section, from the trailing edge to the nose.
+        """Return the distribution of `cells` along a side of a section, from the trailing edge to the nose.
 
-        `height` of the trailing edge, cell `length` there and cell length at the `nose` are in chords. Raises
-        InputError if these lengths are impossible with this number of nodes.
+        For parameters, see `ends`. Raises InputError if `cells` cells cannot have these lengths.
         """
         return TanhLaw.fitted(self.cells, *self.ends(height, length, nose))
 
     def ends(self, height: float, length: float, nose: float | None = None) -> tuple[float, float]:
-        """Return the lengths of the cells next to the base and at the nose, as fractions of `length`.
+        """Return the lengths of the cells at both ends of a side of a section, as fractions of its `length`.
 
-        `height` is the height of the base, `length` the length of the side, both in chords. `nose` (in
-        chords) is the default of the attribute `nose`; None: 0.35 mean cells.
+        One end is the base (blunt trailing edge) with its `height`, the other the nose. If the attribute
+        `nose` is None, the parameter `nose` is the cell length there. All are in chords. If that is None
+        too, it is 0.35 times the mean cell of the side.
         """
         edge = min(_EDGE_CELL * max(height, self.gap) / self.base, 1.0 / self.cells)
         first = edge if self.edge is None else self.edge / length

@@ -83,7 +83,7 @@ def _cells(own: Indices, panels: Sequence[int | None], free: Sequence[int]) -> l
 
 
 def by_panel(sections: Floats, cells: Sequence[int], last: float | None) -> Floats:
-    """Return heights of nodes: `cells` (panels,) between successive `sections`, the last at most `last`."""
+    """Return heights of nodes: `cells` (n - 1,) between `sections` (n,); the last cell is at most `last`."""
     lengths = np.diff(sections)
     means = lengths / np.array(cells)
     ends = np.concatenate([means[:1], np.sqrt(means[1:] * means[:-1]), means[-1:]])

@@ -20,8 +20,8 @@ Ranges = list[tuple[int, int]]  # first and end index of nodes along each direct
 def check_corners(faces: SixFaces) -> None:
     """Raise InputError, with the node, if no position of the inner nodes leaves all cells valid.
 
-    At an edge of the volume, two faces alone determine corners of cells. Elsewhere, the faces next to an
-    inner node may leave no valid position for it (`closed_place`).
+    At an edge of the volume, the two faces alone determine the Jacobians of cells, which must be positive.
+    Elsewhere, the faces must leave a valid position for each inner node next to them (see `closed_place`).
     """
     check_hand(faces)
     worst = []
@@ -52,7 +52,7 @@ def check_corners(faces: SixFaces) -> None:
 
 
 def check_hand(faces: SixFaces) -> None:
-    """Raise InputError if a volume is left-handed, which means at all eight of its corners."""
+    """Raise InputError if a volume is left-handed at all eight of its corners."""
     steps = [np.diff(np.stack(faces.edges_along(axis)), axis=1)[:, [0, -1]] for axis in range(3)]
     places = np.array(list(np.ndindex(2, 2, 2))).T
     edges = []

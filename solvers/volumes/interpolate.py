@@ -65,7 +65,7 @@ class Spline:
 def interpolate(
     faces: SixFaces, laws: Laws, spline: Spline | None = None, out: Floats | None = None
 ) -> Floats:
-    """Return nodes (ni, nj, nk, 3) by transfinite interpolation between `faces`; a `spline` is added.
+    """Return nodes (ni, nj, nk, 3) by transfinite interpolation between `faces`, plus values of a `spline`.
 
     `laws` are the parameters of nodes along edges (see `uniform_laws`). The result is stored in `out` (3, ni,
     nj, nk), if given. Gordon and Hall, Int. J. Numer. Methods Eng. 7 (1973) 461-477.
