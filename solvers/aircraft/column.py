@@ -50,7 +50,7 @@ class ColumnPlan:
 
     @property
     def patches(self) -> int:
-        """Number of patches of the blocks on a surface around the body."""
+        """Number of patches around the wing and the fin on each surface around the body."""
         return 4 if len(self.collars) == 2 else 2 if self.fin else 3
 
     @property
@@ -65,7 +65,7 @@ class ColumnPlan:
 
     @property
     def beside(self) -> tuple[int, int]:
-        """Numbers of cells on the front and on the back of the collars (cells around wings)."""
+        """Numbers of cells along the front and along the back of the collars (the blocks around wings)."""
         shares = [1 if self.fin and each is self.collars[-1] else 2 for each in self.collars]
         before = sum(n * each.nose for n, each in zip(shares, self.collars, strict=True))
         return before, sum(n * each.edge for n, each in zip(shares, self.collars, strict=True))
@@ -91,7 +91,7 @@ class ColumnPlan:
 def planned_column(
     holes: Sequence[Sequence[Hole]], first: float, growth: float
 ) -> tuple[ColumnPlan, list[ColumnLevel]]:
-    """Return the plan of a column (cells around a wing, from bottom to top) and the column on each level."""
+    """Return the plan of the patches around wing and fin, and the patches on each level (`ColumnLevel`)."""
     corners = planned_corners([hole for each in holes for hole in each])
     collars, levels = zip(*(planned_collar(each, corners, first, growth) for each in holes), strict=True)
     plan = ColumnPlan(collars, holes[-1][0].fin)
@@ -105,49 +105,49 @@ def planned_column(
 
 @dataclass(frozen=True, eq=False)
 class ColumnLevel:
-    """A column (the patches from keel to crown, around wing and fin) on one surface around the body."""
+    """The patches from keel to crown around a wing, a fin or both, on one surface around the body."""
 
     plan: ColumnPlan  # numbers of cells
-    levels: tuple[CollarLevel, ...]  # the collars: of the wing, of the fin, or of both, the fin last
-    below: Floats | None = None  # prescribed theta of the nodes from the keel to the first collar
-    # keel, crown: zeta there, if other than at the first collar
+    levels: tuple[CollarLevel, ...]  # cells around the wing, the fin, or both, the fin last
+    below: Floats | None = None  # prescribed theta of the nodes from the keel to these cells
+    # keel, crown: zeta there, if other than at the first of these cells
     keel: float | None = None
     crown: float | None = None
 
     @classmethod
     def of(cls, plan: ColumnPlan, holes: Sequence[Hole]) -> ColumnLevel:
-        """Return the patches from keel to crown around `holes`: sections of a wing, a fin, or of both."""
+        """Return the patches around `holes`, which are the section of a wing, that of a fin, or both."""
         levels = (CollarLevel.of(*each) for each in zip(plan.collars, holes, strict=True))
         return cls(plan, tuple(levels))
 
     def with_counts(self, plan: ColumnPlan) -> ColumnLevel:
-        """Return the column with the cell counts of a `plan`; nodes beside wings and fins stay."""
+        """Return these patches with the numbers of cells that `plan` has above and below wing and fin."""
         levels = (replace(each, plan=counts) for each, counts in zip(self.levels, plan.collars, strict=True))
         return replace(self, plan=plan, levels=tuple(levels))
 
     def beside_fin(self, fin: ColumnLevel) -> ColumnLevel:
-        """Return this column around a wing with its top moved halfway to the level of the `fin`."""
+        """Return these patches with a zeta at the crown halfway between their own and that of `fin`."""
         zeta = self.zeta
         return replace(self, crown=zeta + 0.5 * (fin.levels[-1].hole.zeta - zeta))
 
     def beside_wing(self, wing: ColumnLevel, side: Side) -> ColumnLevel:
-        """Return this fin's column of patches with angles theta below the fin adapted to `side` of `wing`."""
+        """Return these patches of a fin; nodes below it are moved towards the `side` of those of `wing`."""
         own, others = self.low, side[0][: len(self.low), 1]
         keel = self.zeta + _FOLLOWING * (wing.zeta - self.zeta)
         return replace(self, below=_followed(own, others), keel=keel)
 
     @property
     def zeta(self) -> float:
-        """Coordinate zeta (`BodyMap`) of all collars (cells around a wing or fin) of the level."""
+        """Coordinate zeta (0 on the body, 1 in the far field) of the wing's section, or of a lone fin's."""
         return self.levels[0].hole.zeta
 
     @property
     def low(self) -> Floats:
-        """Angles theta of the grid lines from the bottom of the body (0) to the cells around the wing."""
+        """Angles theta of the nodes from the keel (theta = 0) to the cells around the wing, or a lone fin."""
         return self.levels[0].low_and_top[0] if self.below is None else self.below
 
     def above(self) -> tuple[float, tuple[float, float]]:
-        """Return the length in space between the cells around wing and fin, and the cell lengths there."""
+        """Return the length of the gap between the cells around wing and fin, and of both end cells in it."""
         wing, fin = self.levels
         low, high = self._gap
         rho = 0.5 * float(wing.hole.scale[1] + fin.hole.scale[1])
@@ -172,7 +172,7 @@ class ColumnLevel:
 
     @property
     def sides(self) -> tuple[Side, Side]:
-        """The nodes on the front and on the back of the column, each from bottom to top of the body."""
+        """Nodes on the front edge (nearer to the nose) and on the back edge of the patches, keel to crown."""
         return self._side(0), self._side(1)
 
     def _side(self, which: int) -> Side:

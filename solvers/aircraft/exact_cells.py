@@ -35,7 +35,7 @@ def between_walls(walls: tuple[Floats, Floats], beside: Floats, first: float) ->
     """Return n points (n, 3) between two walls, at the distance `first` from a point of each wall.
 
     `walls` has one array (n, 3) of points per wall. The two points for one result must be at most twice
-    `first` apart. The points `beside` (n, 3) show on which side of the walls the results are.
+    `first` apart. Of all points at these distances, those nearest to `beside` (n, 3) are returned.
     """
     middle, half = 0.5 * (walls[0] + walls[1]), 0.5 * (walls[1] - walls[0])
     away, square = beside - middle, (half * half).sum(axis=-1)

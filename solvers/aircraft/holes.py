@@ -55,12 +55,12 @@ Each = TypeVar("Each")
 
 
 def ordered(columns: Sequence[Sequence[int]], values: Sequence[Each]) -> list[Each]:
-    """Return `values`, one for each wing, in the order in which `columns` lists the indices of the wings."""
+    """Return `values`, one for each wing, in the order of the wing numbers in the groups `columns`."""
     return [values[k] for column in columns for k in column]
 
 
 def grouped(columns: Sequence[Sequence[int]], values: Sequence[Each]) -> list[list[Each]]:
-    """Return `values`, one per wing in the order of `columns` (groups of wings), as a list for each group."""
+    """Split `values` into consecutive lists, each as long as one of `columns` (groups of wings)."""
     rest = iter(values)
     return [list(islice(rest, len(column))) for column in columns]
 
@@ -94,7 +94,7 @@ def holes_of(
 ) -> tuple[tuple[tuple[Hole, ...], ...], ...]:
     """Return the sections of wings on k surfaces around the body, by column, by wing and by surface.
 
-    `columns` are groups of wings from nose to tail. `sections` has the nodes (k, n, 3) around each wing.
+    The groups of wings, `columns`, go from nose to tail. `sections` has k x n nodes (k, n, 3) for each wing.
 
     Raises InputError if a section meets the plane of symmetry, or if wings are too close to each other.
     """

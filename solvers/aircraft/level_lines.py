@@ -20,10 +20,10 @@ Side: TypeAlias = tuple[Floats, Floats]
 def lines_between(
     points: Points, begin: Floats, end: Floats, sizes: tuple[Floats, Floats], cells: int
 ) -> Floats:
-    """Return nodes (n, cells + 1, 3) on lines from `begin` to `end` (n, 3): s, theta, zeta of `BodyMap`.
+    """Return nodes (n, cells + 1, 3) on n lines from the points `begin` (n, 3) to the points `end` (n, 3).
 
-    `sizes` are the steps of s (n,) over the first and over the last cell. Between these cells, the cell
-    lengths in space change smoothly. `points` maps nodes to x, y, z.
+    Coordinates are s, theta, zeta: along, around and away from a body. `points` maps them to x, y, z. `sizes`
+    are steps of s (n,) over the first and last cells; between these, cell lengths in space change smoothly.
     """
     lines, arcs, ends = _measured(points, begin, end, sizes)
     nodes = sampled(lines, arcs, smooth_arcs(arcs[:, -1], ends, cells))

@@ -87,7 +87,7 @@ class LoftedMap(BodyMap):
         return (self.points(places + step) - self.points(places - step)) / (2.0 * _STEP)
 
     def normals(self, foot: Floats) -> Floats:
-        """Return unit normals (n, 3) of the body at coordinates `foot` (n, 3); at poles, mean normals."""
+        """Return unit normals (n, 3) at points of the body, `foot` (n, 3): s, theta, zeta as in `BodyMap`."""
         length, normals = self.body.length, self._normals(_off_poles(foot, self.body.length))
         theta = np.linspace(0.0, np.pi, _AROUND)
         for end in (0.0, length):
@@ -118,7 +118,7 @@ def _solved(columns: list[Floats], right: Floats) -> Floats:
 
 
 def map_around(body: Body, far: float) -> BodyMap:
-    """Return the map around a body to a distance `far`."""
+    """Return the map from coordinates along, around and off `body` to space, up to the distance `far`."""
     return LoftedMap(body, far) if isinstance(body, LoftedBody) else BodyMap(body, far)
 
 

@@ -29,7 +29,7 @@ class Loft:
 
 
 def section_loft(stack: Stack, unit: Floats) -> Loft:
-    """Return lines along the span through nodes `unit` (sections, n, 2) around sections of unit chord."""
+    """Return lines along the span through the nodes of sections, `unit` (sections, n, 2) for chord 1."""
 
     def line(number: int, z: Floats) -> Floats:
         return stack.lofted(unit[:, number : number + 1], z)[:, 0]
@@ -39,7 +39,7 @@ def section_loft(stack: Stack, unit: Floats) -> Loft:
 
 
 def fin_loft(fin: Fin, unit: Floats) -> Loft:
-    """Return lines along the span y, on the half z >= 0 of a fin, from nose to trailing edge.
+    """Return lines along the span y on the half z >= 0 of a fin; the first is at the nose.
 
     `unit` (sections, n, 2) are nodes around its sections, scaled to chord 1.
     """

@@ -35,7 +35,7 @@ _ENOUGH = 1.15  # ratio of the number of cells to the requested number from whic
 
 @dataclass(frozen=True, eq=False)
 class AircraftPlan:
-    """Plan of an aircraft grid: wings' lines, their points on surfaces around the body, numbers of cells."""
+    """What is known before an aircraft grid is made: lines along the wings, sections, numbers of cells."""
 
     wings: tuple[WingLines, ...]  # lines of each wing, from nose to tail; a fin follows the wing below it
     sections: tuple[Floats, ...]  # (SAMPLES, n, 3) s, theta and zeta around each wing on the key levels
@@ -107,7 +107,7 @@ class AircraftPlan:
 def plan_of(
     aircraft: Aircraft, request: AircraftRequest, space: BodyMap
 ) -> tuple[AircraftPlan, tuple[str, ...]]:
-    """Return the plan that meets the requested number of cells, or of nodes around wings, and notes.
+    """Return a plan with the requested number of cells, or of nodes around wings; also return notes.
 
     Raises InputError as `AircraftPlan.of`.
     """

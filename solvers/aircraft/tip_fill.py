@@ -15,8 +15,8 @@ _MOST_ROWS = 200
 def tip_patches(loop: Floats, first: float) -> tuple[Floats, Floats]:
     """Return patches inside a closed `loop` (n, 3): a ring (n, rows + 1, 3), and a core (m, k, 3) inside it.
 
-    The loop starts at the trailing edge and runs along the upper side first. The outermost cells of the ring
-    are `first` long, or shorter where the section is too thin.
+    The loop starts at the trailing edge and runs along the upper side first. At the loop, the cells of
+    the ring are `first` high, or lower where the section is too thin.
     """
     ring, core = Cap(bulge=0.0).patches(loop)
     edge, inner = ring[:, 0], ring[:, -1]
@@ -33,7 +33,7 @@ def tip_patches(loop: Floats, first: float) -> tuple[Floats, Floats]:
 
 
 def canted_tip_patches(loop: Floats, first: float, cant: float) -> tuple[Floats, Floats]:
-    """Return the patches (see `tip_patches`) in a `loop` whose plane is rotated about x by `cant` radians."""
+    """Return the patches of `tip_patches` for a tip whose normal is turned by `cant` radians from z to y."""
     if not cant:
         return tip_patches(loop, first)
     place, cants = loop[0, 1:], np.array([-cant, cant])

@@ -25,7 +25,7 @@ def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: fl
     Parameters
     ----------
     normal : (p, 3) for each line, the point off the body along its normal, at the distance `first`.
-    rings : for each wing, indices (n, m) of lines: n around the wing, m from the wing outwards.
+    rings : for each wing, indices (n, m) of lines that start around it: n around it, m away from it.
     """
     turned = (normal - points[1]) / first
     turned[points[0, :, 2] == 0.0, 2] = 0.0
@@ -42,9 +42,9 @@ def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: fl
 
 
 def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Floats:
-    """Return nodes `points` (k, p, 3) of p lines, moved so that cells at a wing are normal to its span.
+    """Return `points` (k nodes, p lines, 3), moved so that cells leave a wing at right angles to its span.
 
-    `ring` (n, m) has the indices of lines, n around the wing and m outwards. First cells are `first` high.
+    `ring` (n, m) are indices of lines, n around the wing and m away from it. First cells are `first` high.
     """
     lines = np.moveaxis(points[:, ring], 2, 0)  # (m, k, n, 3), from the wing outwards
     wall, away = lines[0], (lines[1] - lines[0]) / first
@@ -71,10 +71,10 @@ def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Fl
 def across_tip(
     low: Floats, high: Floats, ring: Indices, wing: WingLines, first: float
 ) -> tuple[Floats, Floats]:
-    """Return the nodes `low` below and `high` beyond a wing tip, moved so that its cells are less oblique.
+    """Return the nodes `low` inboard and `high` outboard of a wing tip, moved for less oblique cells there.
 
-    `ring` (n, m) are indices of the lines around the wing. Displacements fade to 0 at the ends of these
-    lines. First cells stay `first` high.
+    Both are (k, p, 3): k nodes on each of p lines along the span. `ring` (n, m) are indices of lines, n
+    around the wing and m away from it. Displacements fade to 0 at the ends. First cells stay `first` high.
     """
     level = high[0, ring]
     along, lines = wing.axis, low[-1, ring[:, 0]] - low[-2, ring[:, 0]]
@@ -111,8 +111,8 @@ def _chord(edge: Floats, wing: WingLines) -> float:
 def off_tip(points: Floats, cap: Indices, ring: Indices, wing: WingLines) -> Floats:
     """Return nodes `points` (k, p, 3) of p lines beyond a wing tip, moved so that lines start along normals.
 
-    `cap` (c,) has the indices of lines that start on the tip, `ring` (n, m) of lines around the tip. Lines
-    around the tip move less the farther they are from the tip.
+    `cap` (c,) are the indices of lines that start on the tip. `ring` (n, m) are those of lines beside it, n
+    around the tip and m away from it; these move less the farther they are from the tip.
     """
     apart = arc_lengths(points[0, ring])
     fade = 1.0 - apart / apart[:, -1:]

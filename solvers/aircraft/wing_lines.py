@@ -63,9 +63,10 @@ class WingLines:
     def of(
         cls, wing: Stack | SurfaceWing, name: str, body: Body, nodes: int, base: float | None = None
     ) -> Self:
-        """Return `nodes` lines along the span of a wing; sharp trailing edges are opened to `base` chords.
+        """Return lines along the span of a wing through `nodes` points around each of its sections.
 
-        Raises InputError for too few nodes, or if the wing begins outside the body or does not leave it.
+        Sharp trailing edges become `base` chords thick. Raises InputError for too few nodes, or if the wing
+        begins outside the body or does not leave it.
         """
         if isinstance(wing, SurfaceWing):
             least = _SHARP if base is None else base

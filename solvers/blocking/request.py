@@ -31,7 +31,7 @@ class BlockRequest(FirstCell):
         `LAYERED_CELLS`.
     res : number of cells along the longest extent of the domain.
     length : reference length of the Reynolds number; None is the extent of the bodies.
-    walls : names of the parts of loops with layers; if empty, `Domain.layered_loops` have layers.
+    walls : names of the walls that have layers; by default those of `Domain.layered_loops`.
     inlet, outlet : lengths of the passage upstream and downstream of a blade, in axial chords; None is 1.
     refine : how often all cells are halved. `cells`, `cell_size` and `res` apply to the coarsest grid of the
         family; `first_cell` and `growth` apply to the finest grid, which is the result.

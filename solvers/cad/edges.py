@@ -60,7 +60,7 @@ def edge_laws(model: CadModel, size: float, spacing: str) -> list[EdgeLaw]:
 
     `spacing` is ``uniform``, ``cosine`` or ``curvature``, also called ``auto``. With ``curvature``, cells are
     smaller where edges bend, and next to short edges. An edge that is a single point (a pole) gets the
-    distribution of the line through the middle of its face.
+    distribution of the line half-way to the opposite edge of its face.
 
     Raises InputError if `spacing` is none of these.
     """

@@ -65,12 +65,12 @@ class Cascade:
     share: float = 1.0
 
     def ending(self, near: tuple[float, float], centre: complex) -> Self:
-        """Return the cascade with other `near` and `centre`, and with the layers that it has now."""
+        """Return the cascade with the same layers, and new values of its fields `near` and `centre`."""
         return replace(self, near=near, centre=centre, marched=self.ring)
 
     @property
     def opposite(self) -> bool:
-        """Whether the pitch points to the right of the flow, which goes towards larger x."""
+        """Whether the vector `pitch` points to the right of the flow, which goes towards larger x."""
         return self.pitch[1] < 0.0 or (self.pitch[1] == 0.0 and self.pitch[0] > 0.0)
 
     @property
@@ -137,7 +137,7 @@ class Cascade:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Functions that limit the growth of cells along the outer edge of the layers, by loop index."""
+        """Functions on outer edges of layers whose steps between nodes should grow slowly, by loop index."""
         return {BLADE: self.ring.along} if self.layers.limit else {}
 
     def factors_at(self, arcs: Floats) -> Floats:
@@ -167,7 +167,7 @@ class Cascade:
 
     @cached_property
     def passage(self) -> Passage:
-        """The passage of the flow around the layers at the blade."""
+        """The region around the blade and its layers, up to inlet, outlet and the neighbouring blades."""
         front = self.ring.front
         return Passage.around(front, self.left, *self.ends, self.name, self.near, self.centre)
 

@@ -134,7 +134,7 @@ def _rows(cascade: Cascade, layout: Layout, metric: SizeMetric) -> list[Rows]:
 
 
 def straight_rows(cascade: Cascade) -> list[tuple[int, float, float]]:
-    """Return loop index, length and direction (-1 or 1) of the straight rows of cells at inlet and outlet."""
+    """Return loop index, axial length, direction (-1: upstream) of the straight rows to inlet and outlet."""
     passage = cascade.passage
     axial = passage.axial(passage.front.curve.points)
     before = cascade.ends[0] - float(axial.min() - passage.inlet)
@@ -158,7 +158,7 @@ def row_steps(first: float, length: float, largest: float) -> Floats:
 def counts_of(
     cascade: Cascade, chords: Chords, cells: int | None, cell_size: float | None
 ) -> tuple[Indices, int, SizeMetric]:
-    """Return coarse cell counts of `chords` (opposite edges), a factor to final counts, and target sizes."""
+    """Return coarse cell counts of all rows of blocks, the factor that refines them, and target sizes."""
     sizes = cascade.metric
     wanted = WantedCounts(chords, sizes)
     if cell_size is not None:
@@ -184,10 +184,10 @@ def attached_cells(
     cascade: Cascade, chords: Chords, counts: Indices, metric: SizeMetric, layers: int | None = None,
     longest: Mapping[int, float] | None = None,
 ) -> int:  # fmt: skip
-    """Return the number of cells in the layers and in the rows of cells to inlet and outlet.
+    """Return the number of cells in the layers, and in the straight rows that end at inlet and outlet.
 
-    `counts` are the cells along the edges of each chord (set of opposite edges). `layers` replaces the
-    number of layers. `longest` has lengths by loop index; they replace shorter lengths of rows.
+    `counts` are the cells along the edges of each chord (set of opposite edges). `layers` replaces the number
+    of layers. `longest` has, by loop index, lengths for straight rows that would be shorter.
     """
     along = chords.along_loops(counts).tolist()
     total = along[BLADE] * (cascade.rows_of_layers if layers is None else layers)

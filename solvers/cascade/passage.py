@@ -58,8 +58,8 @@ class Passage:
     ) -> Self:  # fmt: skip
         """Return the passage around a closed front (the blade, or the outer edge of its layers).
 
-        Before and behind the front, the blocks end at the distances `near`, in pitches, but at most at the
-        distances `inlet` and `outlet`. `centre` is a point inside the front.
+        Blocks end at the distances `near`, in pitches, upstream and downstream of the front, or at the
+        lengths `inlet` and `outlet` if these are shorter. `centre` is a point inside the front.
         """
         points = front.curve.points
         centre = inner_point(points) if centre is None else centre
@@ -87,7 +87,7 @@ class Passage:
         return np.asarray(((complex_of(points) - self.centre) / self.period).real)
 
     def at(self, axial: Sequence[float], along: Sequence[float]) -> Floats:
-        """Return points (n, 2): `axial` (n,) along the axis from the centre, `along` (n,) pitches aside."""
+        """Return the points (n, 2) at which the methods `axial` and `along` give these values (n,)."""
         centre = pairs_of(np.array(self.centre))
         return centre + np.array(axial)[:, None] * self.axis + np.array(along)[:, None] * self.pitch
 
@@ -102,8 +102,8 @@ class Passage:
     def domain(self, inlet: float, outlet: float) -> Domain:
         """Return the domain of the blocks between the blade, the inlet and the outlet.
 
-        `inlet` and `outlet` are positions along the pitch, in pitches from `centre`. At the inlet, the blocks
-        extend from `inlet` - 1 to `inlet`; at the outlet, from `outlet` - 1 to `outlet`.
+        Along the pitch, in pitches from the blade's `centre`, the blocks extend from `inlet` - 1 to `inlet`
+        at the inlet, and from `outlet` - 1 to `outlet` at the outlet.
         """
         pitch = abs(self.period)
         x, far = (self.inlet, self.outlet), (self.inlet - pitch, self.outlet + pitch)
@@ -148,7 +148,7 @@ def _crossings(polygon: Floats, x: float) -> Floats:
 
 
 def extended(layout: Layout, cut: Indices, passage: Passage, wall: Loop, rows: Sequence[Rows]) -> Layout:
-    """Return the layout with `rows` of cells attached along its boundary; loop 0 becomes the blade's `wall`.
+    """Return the layout extended by `rows` of cells up to the blade's `wall`, to the inlet and to the outlet.
 
     `cut` (k,) are the nodes on the lower periodic boundary of the passage, from inlet to outlet.
     """

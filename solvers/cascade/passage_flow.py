@@ -5,8 +5,7 @@ With ζ = π z / (p n), where n is the axial direction and p the pitch, the comp
     G = ζ + ∫ γ(s) log sinh(ζ - s) ds,   Im G = const along the blade,   ∫ γ ds = 0.
 
 The blade becomes a slit from -h to h that repeats every iπ. The region between the slits is mapped to the
-strip
-|Im σ| < π / 2 by
+strip |Im σ| < π / 2 by
 
     σ = log(sinh(G + h) / sinh(G - h)) / 2,   inlet and outlet at -h and h.
 
@@ -39,7 +38,7 @@ class PassageFlow:
     ----------
     half : half the length of the slit, h.
     around : (n,) increasing angles ν of points on the blade; the potential is G = h cos ν.
-    strip : (n,) positions σ of these points after a second map, to a strip; infinite at the ends of the slit.
+    strip : (n,) images σ of the points if the flow region is mapped to a strip; infinite at the slit's ends.
     away : (n,) ζ - G at the points, where ζ is the coordinate of `Passage.zeta`.
     """
 
@@ -74,21 +73,21 @@ class PassageFlow:
         return cls(half, np.unwrap(angle), along + edge, points - phi)
 
     def to_places(self, places: Complexes) -> Complexes:
-        """Return points ζ (n,) of `Passage.zeta` at which the flow's complex potential is `places` (n,)."""
+        """Return the coordinates ζ (n,) (see `Passage.zeta`) at which the potential G is `places` (n,)."""
         ratio = sinh(places + self.half) / sinh(places - self.half)
         return places + self.inside(np.asarray(0.5 * log(ratio)))
 
     @cached_property
     def far(self) -> tuple[float, float]:
-        """Real part of coordinate minus potential, ζ - G (`PassageFlow`), far upstream and far downstream."""
+        """Re(ζ - G), of coordinate minus potential (see `PassageFlow`), far upstream and far downstream."""
         before, behind = self.inside(self.half * np.array([-1.0, 1.0], dtype=np.complex128))
         return float(before.real), float(behind.real)
 
     def inside(self, places: Complexes) -> Complexes:
-        """Return coordinate ζ minus complex potential (m,) at the points σ = `places` (m,) of the strip.
+        """Return ζ - G (m,) (see `PassageFlow`) at the points σ = `places` (m,) of the strip.
 
-        Cauchy's integral over the blade is a trapezoidal sum in the variable tanh σ/2, divided by the same
-        sum for the constant 1 (Helsing, Ojala, J. Comput. Phys. 227 (2008) 2899-2921).
+        Cauchy's integral over the blade is a trapezoidal sum in the variable tanh(σ/2) there, divided by the
+        same sum for the constant 1 (Helsing, Ojala, J. Comput. Phys. 227 (2008) 2899-2921).
         """
         finite = np.isfinite(self.strip)
         around = tanh(0.5 * self.strip[finite])

@@ -158,5 +158,5 @@ def _blade_arcs(flow: PassageFlow, angles: Floats, front: Loop) -> Floats:
 
 
 def cut_of(layout: Layout) -> Indices:
-    """Return the nodes (k,) of the lower periodic side of a passage `template`, from inlet to outlet."""
+    """Return the nodes (k,) on the lower periodic side of a `layout` of `template`, from inlet to outlet."""
     return np.concatenate([layout.blocks[2][:, 0], layout.blocks[4][1:, 0], layout.blocks[7][1:, 0]])

@@ -59,9 +59,9 @@ class Panels(NamedTuple):
 def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> Panels:
     """Return panels that cover the levels `first` to `last` - 1 of `eta`; none if they would not save work.
 
-    `eta` (nj,) ascends from 0 at the wall to 1 at the far field. `height` is the width of the strip, in the
-    coordinate psi across it; psi of the wall varies by `spread`. A panel is at most as long as its distance
-    from the wall, so that the error of its `NODES` points is (3 + sqrt(8))^-NODES = 6e-13.
+    `eta` (nj,) ascends from 0 at the wall to 1 at the far field. The domain is mapped onto a strip: `height`
+    is its mean width, and its edge at the wall is uneven by `spread`. A panel is at most as long as its
+    distance from the wall, so that the error of its `NODES` points is (3 + sqrt(8))^-NODES = 6e-13.
     """
     ends: list[int] = []
     points, matrices = [np.empty(0)], [np.empty((NODES, 0))]

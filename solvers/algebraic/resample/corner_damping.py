@@ -21,7 +21,7 @@ NEAR, FAR = 4.0, 10.0
 
 
 def openings(z: Any, xp: Any) -> Any:
-    """Return the damping factors (.., 2, 2) of splines, 0 to 1, at the four corners of planar grids.
+    """Return the weight of linear interpolation in place of splines, 0 to 1, at grid corners (.., 2, 2).
 
     `z` (.., m, n) are the nodes as complex numbers, an array of numpy or torch; `xp` is that module.
     """
@@ -44,7 +44,7 @@ def fading(m: int, n: int) -> Floats:
 
 @lru_cache(maxsize=16)
 def cubic(n: int, count: int) -> Floats:
-    """Return the matrix (count, n) from second derivatives at n knots to the spline minus its polygon."""
+    """Return the matrix (count, n) from second derivatives at n knots to spline minus linear values."""
     return _weighted(n, count, 2)
 
 

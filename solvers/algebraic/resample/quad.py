@@ -41,10 +41,11 @@ def refine_quad(coarse: Floats, sides: Sides) -> Floats:
 
 
 def mended(coarse: Floats, sides: Sequence[Floats], nodes: Floats) -> Straight | None:
-    """Interpolate `coarse` (2, m, n) to `nodes` (2, ni, nj) again, in place, linearly around folded cells.
+    """Replace splines by linear interpolation around folded cells of `nodes` (2, ni, nj), in place.
 
-    Return a mask (m, n) that is 1 at the coarse nodes with linear interpolation. If `coarse` has folded
-    cells, or if this does not reduce the number of folded cells, `nodes` stay unchanged and None is returned.
+    The nodes are interpolated from a `coarse` grid (2, m, n) and from the `sides` (see `Sides`). Return a
+    mask (m, n) that is 1 at the coarse nodes with linear interpolation. If `coarse` has folded cells, or if
+    this does not reduce the number of folded cells, `nodes` stay unchanged and None is returned.
     """
     if count_folded(coarse.transpose(1, 2, 0)):
         return None

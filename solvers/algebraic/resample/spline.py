@@ -74,8 +74,8 @@ def between(values: Floats, n: int) -> Floats:
 def places(m: int, n: int) -> tuple[NDArray[np.intp], Floats]:
     """Return, for each of n uniform places, the index (n,) of the knot k before it, and weights (n, 4).
 
-    The weights multiply f_k, f_k+1, M_k and M_k+1: values f and second derivatives M at the knots k and k+1.
-    At the fraction t between these knots, the spline is ::
+    The weights multiply f_k, f_k+1, M_k and M_k+1: values f at m uniform knots, and second derivatives M with
+    respect to the knot's index. At the fraction t between the knots k and k+1, the spline is ::
 
         s = (1-t) f_k + t f_k+1 - t (1-t) (2-t)/6 M_k - t (1-t) (1+t)/6 M_k+1
     """

@@ -64,7 +64,7 @@ def decompose(
     ----------
     cells : number of cells of the quad mesh from which blocks are derived.
     count : approximate number of points of the triangulation.
-    price : price of a block, in degrees of mean deviation from 90 degrees; a higher price gives fewer blocks.
+    price : degrees by which the mean deviation of angles from 90 degrees may grow for each block removed.
     timings : filled with the times of the stages.
     sizes : target lengths of the edges of the quad mesh, used instead of `cells`.
     symmetric : whether a symmetric domain gets symmetric blocks; no effect if it has periodic sides.

@@ -68,9 +68,9 @@ def suited(
     """Return cell counts of chords (rows of blocks) that satisfy all conditions and are nearest to `counts`.
 
     Counts are at least `least`, are multiples of `multiple`, and are equal on both sides of each periodic
-    pair. `fixed` prescribes the counts of some chords, by index. If `named`, a side with a given cell count
-    gets `multiple` / `finer` times this count, rounded up or down; `finer` is the factor of a later
-    refinement.
+    pair. `fixed` prescribes the counts of some chords, by index. A later refinement multiplies all counts by
+    `finer`. If `named`, sides for which the domain gives cell counts by name get `multiple` / `finer` times
+    these, rounded up or down.
 
     Raises InputError if given counts contradict each other or are too small; SolverError if no counts are
     equal along periodic sides.
@@ -169,7 +169,7 @@ def _alike(chords: Chords) -> list[Row]:
 
 
 def lacking_side(layout: Layout) -> Indices | None:
-    """Return the nodes of a periodic side that always has fewer cells than its partner, if there is one."""
+    """Return the nodes of a periodic side that cannot have as many cells as its partner; None if all can."""
     if not layout.mesh.domain.periodic:
         return None
     for row, (_, first, second) in zip(_differences(Chords.of(layout)), sides_of(layout.mesh), strict=True):

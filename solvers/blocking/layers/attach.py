@@ -21,7 +21,7 @@ class Rows:
     loop : index of both loops, in the layout's domain and in the extended domain.
     nodes : (k, m, 2) nodes of k lines, in the order of their first nodes along the layout's loop.
     arcs : (k,) arc lengths on the loop of the extended domain at which the lines end.
-    layers : whether the lines are layers that end at a wall; no optimisation moves layers.
+    layers : whether the new cells are layers at a wall, which no later optimisation moves.
     """
 
     loop: int
@@ -31,9 +31,9 @@ class Rows:
 
 
 def attach(layout: Layout, domain: Domain, rows: Sequence[Rows]) -> Layout:
-    """Return the layout with new blocks outside some boundary loops, one at each block side on these loops.
+    """Return the layout extended beyond some boundary loops, by a new block at each block side on them.
 
-    `rows` are the grid lines through the new blocks, for each loop. `domain` is the domain of the result.
+    For each such loop, `rows` has the grid lines in the new blocks. `domain` is the domain of the result.
     """
     mesh = layout.mesh
     nodes, places = [mesh.nodes], [replace(mesh.places, loop=mesh.places.loop.copy())]

@@ -49,9 +49,9 @@ class GrowthLines:
     ) -> Self:
         """Return all pairs of consecutive edges on grid lines, each with a limit on its length ratio.
 
-        Limits are logarithms. `limit` is for grid lines that leave walls, at nodes in the mask `walls` (n,),
-        and for lines across sides of blocks; `elsewhere` is for other pairs. A larger ratio on a wall is also
-        the limit on lines parallel to this wall, unless its nodes are `sliding`.
+        Limits are logarithms: `limit` for lines that start at walls, which are the nodes in the mask `walls`
+        (n,), and for edges on both sides of a block side; `elsewhere` for all others. A larger ratio along a
+        wall is also the limit for lines parallel to it, unless the wall's nodes are `sliding`.
         """
         mesh, pairs = layout.mesh, cls.of(layout.mesh, elsewhere)
         nodes = pairs.nodes
@@ -79,20 +79,20 @@ class GrowthLines:
         return replace(pairs, limit=limits)
 
     def some(self, which: Bools) -> Self:
-        """Return the pairs of edges in the mask `which` (k,)."""
+        """Return only those pairs of consecutive edges that are in the mask `which` (k,)."""
         return type(self)(self.nodes[which], self.limit[which], self.offset[which], self.begins[which])
 
     def growth(self, z: Complexes) -> Floats:
-        """Return logarithms (k,) of the pairs' length ratios, plus `offset`, for complex nodes `z` (n,)."""
+        """Return log(second / first edge length) + `offset` (k,) of each pair, for complex nodes `z` (n,)."""
         before, after = self.edges(z)
         return np.asarray(log(modulus(after) / modulus(before)) + self.offset)
 
     def edges(self, z: Complexes) -> tuple[Complexes, Complexes]:
-        """Return the first and the second edge of each pair as complex vectors (k,), for nodes `z` (n,)."""
+        """Return both edges (k,) of each pair of edges as complex numbers, for complex nodes `z` (n,)."""
         return z[self.nodes[:, 1]] - z[self.nodes[:, 0]], z[self.nodes[:, 2]] - z[self.begins]
 
     def largest_at(self, mesh: QuadMesh, rows: list[Indices]) -> Floats:
-        """Return the largest |growth| (n,) at each node; on lines of `rows`, no less than at the first."""
+        """Return the largest |growth| (n,) at each node, or at the start of its line in `rows` if larger."""
         growth = np.zeros(len(mesh.nodes))
         np.maximum.at(growth, self.nodes[:, 1], np.abs(self.growth(complex_of(mesh.nodes))))
         for table in rows:

@@ -43,18 +43,18 @@ def last_layers(
 
 
 def ring_rows(
-    mesh: QuadMesh, loop: int, ring: Ring, rows: int, settings: LayerSettings, inner: Floats,
+    mesh: QuadMesh, loop: int, ring: Ring, rows: int, settings: LayerSettings, beyond: Floats,
     factors: Callable[[Floats], Floats] | None = None,
 ) -> Rows:  # fmt: skip
     """Return the layers of a ring, between its wall and the nodes of `mesh` on its outer edge.
 
-    `inner` (k,) are the heights of the cells outside the ring. First-cell heights of the settings are
+    `beyond` (k,) are the heights of the first cells beyond the layers. First-cell heights of the settings are
     multiplied by `factors`, a function of arc lengths (k,) of the wall.
     """
     order = mesh.places.along(loop)
     columns, starts = ring.columns(mesh.places.arc[order])
     first = settings.first * (factors(starts) if factors else np.ones(len(starts)))
-    lines = layer_lines(columns, mesh.nodes[order], inner, rows, settings, first)
+    lines = layer_lines(columns, mesh.nodes[order], beyond, rows, settings, first)
     return Rows(loop, lines[:, ::-1], starts, True)
 
 

@@ -86,7 +86,7 @@ def fitted(
 def check_room(room: Floats, first: float, place: Callable[[int], str]) -> None:
     """Raise InputError if `room` (n,) is too small for first cells of height `first`.
 
-    `room` is the gap times `GAP_PART`. `place` returns, for messages, the position of a column as text.
+    `room` is `GAP_PART` times the gap between walls. `place` returns the position of a column as text.
     """
     k = int(np.argmin(room))
     if room[k] < FEWEST_CELLS * first:

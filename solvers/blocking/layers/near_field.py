@@ -84,7 +84,7 @@ class NearField:
     def rows(self, mesh: QuadMesh, heights: Floats, settings: LayerSettings) -> Rows:
         """Return nodes on straight lines from the circle around the bodies to the outer boundary.
 
-        The circle is loop 0 of `mesh`. `heights` (k,) are the heights of the k cells inside that touch it.
+        The circle is loop 0 of `mesh`. `heights` (k,) are those of the k cells that touch it from inside.
         """
         order = mesh.places.along(0)
         start = mesh.nodes[order]

@@ -66,8 +66,8 @@ def found_outside(
 def taken_outside(layout: Layout, rest: Domain, fronts: Collection[int]) -> Layout:
     """Return `layout` transferred to the domain `rest`, whose loops `fronts` are the outer edges of layers.
 
-    Raises InputError as `carried_over`, if the layout has layers around other loops, or if it has no layers
-    around a wall with sharp corners.
+    Raises InputError as `carried_over` does; also if the layout has layers around a loop not in `fronts`, or
+    none around a loop in `fronts` that has sharp corners.
     """
     taken = carried_over(layout, rest)
     places = taken.mesh.places

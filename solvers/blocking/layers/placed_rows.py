@@ -71,8 +71,8 @@ def with_layers(layout: Layout, rows: WallRows, settings: Sequence[LayerSettings
 def held_nodes(layout: Layout, rows: WallRows, settings: LayerSettings, sheets: int) -> tuple[Bools, Indices]:
     """Return a mask (n,) of the fixed nodes in rows of layers, and pairs (k, 2) of nodes that move together.
 
-    Each pair is a wall node and a node of the first cells on the same line. In the first `sheets` rows, which
-    are around sharp edges, and at corners, both nodes are fixed and form no pair.
+    Each pair is a wall node and a node of the first cells on the same line. The number of rows around sharp
+    edges, which come first, is `sheets`. In these rows and at corners, both nodes are fixed and form no pair.
     """
     mesh, cells = layout.mesh, settings.constant + 1
     held, pairs = np.zeros(len(mesh.nodes), dtype=bool), []

@@ -49,14 +49,14 @@ class Ring:
 
     @property
     def thickness(self) -> Floats:
-        """(n,) lengths of the columns."""
+        """(n,) lengths of the lines of nodes from the wall to the outer edge."""
         return np.asarray(norms(np.diff(self.levels, axis=1)).sum(axis=1))
 
     def columns(self, places: Floats) -> tuple[Floats, Floats]:
         """Return lines (k, m, 2) from the wall to the outer edge, and the arc lengths (k,) of their starts.
 
-        The lines end at the arc lengths `places` (k,) on the outer edge. Each is interpolated from four
-        columns by cubics, but never across a corner.
+        The lines end at the arc lengths `places` (k,) on the outer edge. Each is interpolated by cubics from
+        four lines of nodes, but never across a corner.
         """
         n = len(self.arcs)
         knots = np.append(self.front.curve.knots, self.front.length)
@@ -78,7 +78,7 @@ class Ring:
 
     @cached_property
     def along(self) -> Measures:
-        """Lengths along the wall and the level above it, as functions of the length along the outer edge."""
+        """Arc lengths along outer edge, wall and the nodes next to the wall, as functions of the first."""
         n = len(self.arcs)
         index = np.arange(FINER * n + 1) / FINER
         knots = np.append(self.front.curve.knots, self.front.length)
@@ -113,8 +113,8 @@ def march_ring(
     """Return the layers around the whole loop `number`, `thickness` thick where there is room.
 
     `first` is the height of first cells, `largest` the greatest length of cells along the wall, both in the
-    domain's unit. The layers are symmetric about `mirrors` of the loop. With `before`, an earlier result,
-    they are at most `room` (n,) thick at its n columns. Raises InputError, with the position, if no layer
+    domain's unit. The layers are symmetric about `mirrors` of the loop. `room` (n,) is the largest thickness
+    at the n lines of nodes of `before`, an earlier result. Raises InputError, with the position, if no layer
     fits in a gap, or if every march folds at a wall.
     """
     loop = domain.loops[number]
@@ -151,7 +151,7 @@ def march_ring(
 
 
 def room_between(rings: Mapping[int, Ring]) -> dict[int, Floats]:
-    """Return, by loop index, the permitted thickness (n,) of layers at nodes too close to other layers.
+    """Return, by loop index, the permitted thickness (n,) of layers; inf where no other layers are close.
 
     Layers can collide although walls do not face each other, because they fan out around sharp edges.
     """

@@ -53,7 +53,7 @@ class RowSizes:
 
     @classmethod
     def of(cls, domain: Domain, number: int, stretches: Sequence[Stretch], settings: LayerSettings) -> Self:
-        """Return the sizes along loop `number`; layers are on its parts `stretches`, or on all if empty."""
+        """Return cell sizes along loop `number`, with layers on its parts `stretches`; all around if empty."""
         loop = domain.loops[number]
         arcs, length = sizes_by_bend(loop, loop.length / COLUMNS, TURN)
         gap = _gaps(domain, number, arcs)
@@ -79,7 +79,7 @@ class RowSizes:
         return graded(full, self.arcs, self.loop.length, SLOPE)
 
     def thickness_at(self, arcs: Floats, scale: float, settings: LayerSettings) -> Floats:
-        """Return the thickness (k,) of layers at arc lengths (k,); `scale` is a factor on cell lengths."""
+        """Return the thickness (k,) at arc lengths `arcs` (k,); `scale` multiplies lengths along the wall."""
         return np.interp(arcs, self.arcs, self.thickness(scale, settings), period=self.loop.length)
 
     def thickness_behind(self, away: Floats, scale: float, settings: LayerSettings) -> Floats:
@@ -88,7 +88,7 @@ class RowSizes:
         return edge + SPREAD * away
 
     def rows(self, scale: float, settings: LayerSettings) -> int:
-        """Return the approximate number of layers where the first-cell height is that of `settings`."""
+        """Return the approximate number of layers; `scale` multiplies the cell lengths along the wall."""
         on = self.on & (self.first == settings.first)
         return settings.rows(float(self.thickness(scale, settings)[on if on.any() else self.on].max()))
 

@@ -42,8 +42,8 @@ class Stretch:
 def layered_walls(domain: Domain, names: Collection[str] = ()) -> tuple[list[int], tuple[Stretch, ...]]:
     """Return the indices of the loops with layers all around, and the parts of other loops with layers.
 
-    `names` are the walls with layers. Without names, parts of `Domain.layered_loops` have layers if they may
-    be walls by their names. Layers continue along an axis or symmetry line that continues a wall. Raises
+    `names` are the walls with layers. By default, these are the parts of `Domain.layered_loops` that
+    `may_be_wall` accepts. Layers continue along an axis or symmetry line that continues a wall. Raises
     InputError if no wall has layers, or if layers would end elsewhere than at corners of about 90 degrees.
     """
     whole: list[int] = []

@@ -68,8 +68,8 @@ class WallLayers:
     ) -> Self:  # fmt: skip
         """Return the layers of a domain.
 
-        Layers around `loops` (indices) are marched. At `stretches` (parts of loops) and around `sheets` they
-        are rows of blocks. `sheets` are indices of loops with one sharp edge and a wake with layers. Raises
+        Layers around `loops` (indices) are marched. Other layers are rows of blocks: on `stretches` (parts of
+        loops), and around `sheets`, the indices of loops with one sharp edge and a wake with layers. Raises
         InputError if there is too little room, or if layers fold.
         """
         rings = rings_around(domain, loops, settings)
@@ -98,13 +98,13 @@ class WallLayers:
 
     @cached_property
     def of_rows(self) -> tuple[LayerSettings, ...]:
-        """Settings of the layers in rows of blocks: around the loops `sheets`, then on parts `stretches`."""
+        """Settings of the layers that are rows of blocks: first for each of `sheets`, then of `stretches`."""
         loops = self.domain.loops
         names = [loops[k].names for k in self.sheets] + [s.names(loops[s.loop]) for s in self.stretches]
         return tuple(map(self.settings.at, names))
 
     def symmetric(self, layout: Layout) -> Layout:
-        """Return the layout outside the layers, with symmetric nodes if its quads are symmetric."""
+        """Return `layout` with its nodes made symmetric about `mirrors`, if its connectivity is symmetric."""
         return replace(layout, mesh=made_symmetric(layout.mesh, images_of(layout.mesh, self.mirrors)))
 
     def is_free(self, number: int, mesh: QuadMesh, wake: Sequence[int]) -> bool:
@@ -143,8 +143,8 @@ class WallLayers:
     ) -> SizeMetric:
         """Return the target cell sizes outside the layers, at most `size` if given.
 
-        Without `size`, sizes next to layers are `scale` times the cell lengths along the wall. `wakes` has
-        the line (k, 2) of a wake by the index of the loop at which it begins.
+        Without `size`, sizes next to layers are `scale` times the cell lengths along the wall. `wakes` maps
+        the index of a loop to the nodes (k, 2) of the wake that begins at it.
         """
         scale = 1.0 if size else scale
         parts = [sizes.metric(scale, self.settings) for sizes in self.sizes.values()]
@@ -163,7 +163,7 @@ class WallLayers:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Limits (`Measures`) on cell growth along the outer edge of the layers around a loop, by loop."""
+        """Functions on outer edges of layers whose steps between nodes should grow slowly, by loop index."""
         measures = {k: ring.along for k, ring in self.rings.items()}
         if self.near is not None:
             ends = np.array([0.0, self.near.circle.length])
@@ -175,7 +175,7 @@ class WallLayers:
         return self.of_ring(number).rows(float(self.rings[number].thickness.max()))
 
     def attached_cells(self, chords: Chords, counts: Indices) -> int:
-        """Return how many cells layers and outer rows add if rows of blocks have `counts` cells."""
+        """Return the number of cells in `rings` and in the far field, if `chords` have `counts` cells."""
         along = chords.along_loops(counts).tolist()
         total = sum(along[number] * self.ring_rows(number) for number in self.rings)
         if self.near is not None:
@@ -232,7 +232,7 @@ class Counts:
     times : factor from the last optimisation to the final grid.
     scale : factor on the cell lengths along walls.
     metric : target cell sizes.
-    layers : (rows,) correction of the number of layers in each row of blocks.
+    layers : (rows,) factor on the estimated number of layers in each row of blocks.
     """
 
     coarse: Indices

@@ -37,8 +37,8 @@ class WallRows:
     Parameters
     ----------
     loops : for each row, the index of the loop along which it goes.
-    across : (b, 2) for each block, the row that its lines from south to north cross, then the row that its
-        lines from west to east cross; -1: none. Refinement does not change these indices.
+    across : (b, 2) rows that are crossed by each block's lines from south to north, and by those from west to
+        east; -1 for no row. Refinement does not change these indices.
     back : (b, 2) whether these lines lead towards the wall.
     """
 
@@ -112,7 +112,7 @@ def with_wall_rows(
     """Return the layout with rows of quads added along `stretches` and around `sheets`, and these rows.
 
     `stretches` are parts of loops, `sheets` indices of loops with a sharp edge. `mirrors` are mirror lines of
-    the domain. Raises SolverError if lines of the mesh do not bound blocks.
+    the domain. Raises SolverError if the new mesh cannot be divided into blocks.
     """
     mesh = layout.mesh
     rungs: list[Edge] = []  # an edge across each row, from wall to front

@@ -44,7 +44,7 @@ class BaseComplex:
         """Edges along the south, north, west and east side of each block.
 
         The first array (k,) lists the edges of one side after another, with -1 after each side. The second
-        array (4 b,) has the index at which each side begins in the first, the third (4 b,) the side's chord.
+        (4 b,) has the index of each side's first edge in that list. The third (4 b,) has each side's chord.
         """
         lines = [line for block in self.blocks for line in (block[:, 0], block[:, -1], block[0], block[-1])]
         nodes = np.concatenate(lines)

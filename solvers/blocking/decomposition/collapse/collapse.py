@@ -116,8 +116,8 @@ def contract(mesh: QuadMesh, rungs: Bools) -> QuadMesh | None:
 
     Merged nodes move to the corner of the domain among them, or else to the mean arc length of wall nodes
     among them, or else to their mean position. Two corners cannot be merged, nor two wall nodes without a
-    wall edge in `rungs` between them. The result is invalid if more wall nodes than before have a wrong
-    number of quads, or if it does not conform.
+    wall edge in `rungs` between them. The result must satisfy `is_conforming`, and have no more wall nodes
+    with a wrong number of quads (`wrong_count`) than before.
     """
     label, count = joined_classes(np.ascontiguousarray(mesh.edges[rungs]), len(mesh.nodes))
     kept = ~rungs[mesh.edge_of].any(axis=1)
@@ -165,7 +165,7 @@ def _placed(trial: QuadMesh, mesh: QuadMesh, label: Indices) -> QuadMesh:
 
 
 def is_conforming(mesh: QuadMesh, many: int = 0) -> bool:
-    """Return whether the mesh conforms and interior nodes have 3 to 5 quads; a larger `many` replaces 5."""
+    """Return whether `conforms` holds and interior nodes have 3 to 5 quads, or up to `many` if larger."""
     inside = mesh.valence[~mesh.wall_nodes]
     few, many = VALENCES[0], max(VALENCES[1], many)
     return conforms(mesh) and bool(((inside >= few) & (inside <= many)).all())

@@ -46,9 +46,9 @@ def score(blocks: BaseComplex, price: float = PRICE, wanted: Floats | None = Non
 
 
 def size_spread(blocks: BaseComplex, wanted: Floats | None) -> float:
-    """Return how unequal block sides are in each row of blocks: the variance of log(length).
+    """Return how unequal the sides between the blocks of a row are: the variance of log(length).
 
-    Blocks are weighted by areas. Lengths are relative to the target lengths `wanted` (e,) of edges, if given.
+    It is averaged over all rows, weighted by areas. Lengths are divided by targets `wanted` (e,), if given.
     """
     lengths = log(blocks.side_lengths(wanted))
     chord = blocks.sides[2]

@@ -27,7 +27,7 @@ _DIFFUSION = 0.003
 
 @dataclass(frozen=True, eq=False)
 class CrossField:
-    """Four directions at right angles (a cross) at each point of a surface; cell counts at vertices."""
+    """Four directions at right angles (a cross) and the number of cells at each vertex of a surface."""
 
     surface: Triangulation
     walls: WallDirections

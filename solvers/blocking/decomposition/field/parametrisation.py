@@ -100,7 +100,7 @@ class Parametrisation:
         return rows[kept], column[kept].astype(np.intp), value[kept]
 
     def solve(self, weights: Floats) -> Complexes:
-        """Return u + i v (t, 3) at the corners of the triangles, which count with `weights` (t,)."""
+        """Return the solution u + i v (t, 3) at the corners of the triangles, which have `weights` (t,)."""
         stiffness = (weights[:, None] * self._values)[self._there]
         values = np.concatenate([stiffness, self._coefficients])
         scale = 1.0 / max(float(np.abs(stiffness).mean()), 1e-300)

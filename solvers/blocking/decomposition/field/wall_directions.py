@@ -30,9 +30,9 @@ class WallDirections:
 def wall_directions(surface: Triangulation) -> WallDirections:
     """Return the directions that the cross field should have along the walls of a surface.
 
-    At a corner of alpha degrees where k cells meet, the directions of both walls are rotated by 45 k -
-    alpha/2 degrees, so that both give the same cross. The rotation decreases with the distance from the
-    corner. At other vertices the direction is the mean of the directions of the two wall edges.
+    At a corner of alpha degrees where k cells meet, the directions of the two walls are rotated towards or
+    away from each other, each by 45 k - alpha/2 degrees, to give the same cross. The rotation decreases with
+    the distance from the corner. At other vertices the direction is the mean of those of the two edges.
     """
     triangle, edge = surface.walls
     start = surface.triangles[triangle, edge]

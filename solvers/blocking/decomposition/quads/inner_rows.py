@@ -29,10 +29,10 @@ def half_edges(mesh: QuadMesh) -> HalfEdges:
 def with_row(mesh: QuadMesh, path: Sequence[int], *, closed: bool = False, of_wall: bool = False) -> QuadMesh:
     """Return the mesh with a row of quads inserted on the left of a path of nodes.
 
-    The path goes from wall to wall or, if `closed`, from its last node back to the first. It may follow a
-    wall. The far side of the row is called the front. The new nodes are on the front or, if `of_wall`, on the
-    path. The new quads are the last ones of the mesh; each has two nodes on the path, then two on the front.
-    If a closed path begins at a corner with one quad, the row crosses itself there, in the last new quad.
+    The path goes from wall to wall or, if `closed`, from its last node back to the first. The far side of the
+    row is called the front. The new nodes are on the front and the old ones on the path, or vice versa if
+    `of_wall`. The new quads are the last ones of the mesh; each has two nodes on the path, then two on the
+    front. If a closed path begins at a corner with a single quad, the last new quad joins its ends there.
     """
     half, n, count = half_edges(mesh), len(mesh.nodes), len(path)
     new = list(range(n, n + count))
@@ -106,7 +106,7 @@ def _left_of(
 
 
 def corner_row(mesh: QuadMesh, corner: int, farthest: int) -> QuadMesh | None:
-    """Return the mesh with an additional row of quads around a corner with one quad; None if impossible.
+    """Return the mesh with one more row of quads around a corner that has a single quad; None if none fits.
 
     The row is `farthest` quads away from the corner, or fewer if irregular nodes are in the way.
     """

@@ -28,13 +28,13 @@ def wrong_count(mesh: QuadMesh) -> Bools:
 
 
 def loops_to_pad(mesh: QuadMesh) -> list[int]:
-    """Return the indices of boundary loops without corners on which a node has a wrong number of quads."""
+    """Return the indices of boundary loops that have no corners, but nodes with other than two quads."""
     wrong = distinct(mesh.places.loop[wrong_count(mesh)])
     return [int(loop) for loop in wrong if loop >= 0 and not mesh.domain.loops[loop].corners]
 
 
 def spans_to_pad(mesh: QuadMesh, spans: Sequence[Span]) -> list[Span]:
-    """Return the `spans` (parts of loops) in which a node other than the ends has a wrong number of quads."""
+    """Return the `spans` (parts of loops) with a wrong number of quads (`wrong_count`) at an inner node."""
     places, wrong = mesh.places, wrong_count(mesh)
     return [
         (loop, begin, end)
@@ -62,7 +62,7 @@ def pad(mesh: QuadMesh, loops: Sequence[int]) -> QuadMesh:
 
 
 def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
-    """Return the mesh with a row of quads added along a part of a loop between two corners with one quad.
+    """Return the mesh with a row of quads along part of a loop, between corners that have a single quad each.
 
     If both are the same corner, the row is closed. `with_row` describes the order of the new quads.
     """

@@ -32,12 +32,12 @@ class Ports:
     """
 
 
-def ports_of(seamless: SeamlessMap, joined: Indices) -> Ports:
-    """Return the directions of lines from a map's corners, singular vertices and wall vertices `joined`."""
+def ports_of(seamless: SeamlessMap, others: Indices) -> Ports:
+    """Return the directions in which lines leave a map's corners, its singular vertices, and `others`."""
     cells, around = seamless.boundary_cells, seamless.valence.copy()
     around[: len(cells)] = cells
     corners = np.flatnonzero((seamless.corner_cells > 0) | ((cells != 2) & (cells > 0)))
-    vertex = np.concatenate([corners, seamless.singular, joined]).astype(np.intp)
+    vertex = np.concatenate([corners, seamless.singular, others]).astype(np.intp)
     on_wall, quarters = seamless.surface.on_wall[vertex], around[vertex]
     entry, owner = _fans(seamless, vertex)
     face, corner = np.divmod(entry, 3)
@@ -46,7 +46,7 @@ def ports_of(seamless: SeamlessMap, joined: Indices) -> Ports:
     node_at[face, corner] = owner
     port_at = np.full((*seamless.surface.triangles.shape, 4), -1, dtype=np.intp)
     port_at[face, corner] = np.where(margin > -SLACK, port, -1)
-    late = np.arange(len(vertex)) >= len(vertex) - len(joined)
+    late = np.arange(len(vertex)) >= len(vertex) - len(others)
     shoots = late | ~on_wall | (quarters != 2)
     starts = _starts(face, corner, owner, port, margin, shoots, int(quarters.max(initial=1)))
     return Ports(vertex, quarters, on_wall, node_at, port_at, starts)

@@ -40,11 +40,11 @@ class Trails:
         return float(self.length[self.first[trail + 1] + trail])
 
     def at_vertex(self, vertex: int) -> tuple[int, float]:
-        """Return the index of the trail (line in the map) through a wall vertex, and the length before it."""
+        """Return the index of the trail (line in the map) through a wall vertex, and its length up to it."""
         return self._on_piece(self.vertex == vertex, 0.0)
 
     def at_edge(self, face: int, edge: int, part: float) -> tuple[int, float]:
-        """Return which line follows a wall edge of a triangle, and its length up to a `part` of the edge."""
+        """Return which trail goes along a wall edge, and its length up to the fraction `part` of the edge."""
         return self._on_piece((self.face == face) & (self.edge == edge), part)
 
     def _on_piece(self, which: Bools, part: float) -> tuple[int, float]:
@@ -54,7 +54,7 @@ class Trails:
         return trail, float(start + part * (stop - start))
 
     def locate(self, trail: Indices, length: Floats) -> tuple[Indices, Floats]:
-        """Return pieces (q,) of lines at distances `length` (q,), and the positions in each, 0 to 1."""
+        """Return the pieces (q,), and places in them (0 to 1), at `length` (q,) along lines `trail` (q,)."""
         ends = self.length[self.first[1:] + np.arange(len(self.first) - 1)]
         offset = np.append(0.0, np.cumsum(ends))
         owner = np.repeat(np.arange(len(ends)), np.diff(self.first))
@@ -75,7 +75,7 @@ class Trails:
 
 
 def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, rays: int) -> Trails:
-    """Return the lines that `trace_rays` has traced as `pieces` (p, 3) and `lines` (p, 5)."""
+    """Return the trails of `rays` rays from `pieces` (p, 3) and `lines` (p, 5), results of `trace_rays`."""
     order = np.argsort(pieces[:, 0], kind="stable")
     pieces, lines = pieces[order], lines[order]
     count = np.bincount(pieces[:, 0], minlength=rays)

@@ -67,7 +67,7 @@ def wall_sizes(domain: Domain, count: int, finer: tuple[Floats, Floats] | None =
 
     Here h0 is `usual_size`, piece the length of the wall between two corners, gap the distance to the wall in
     front, radius the radius of curvature, and loop the length of the loop. `finer` are further points (m, 2),
-    and the greatest lengths (m,) there. Lengths change by at most 0.35 per distance.
+    and the greatest lengths (m,) there. Lengths at two points differ by at most 0.35 of their distance.
     """
     largest = usual_size(domain.area, count)
     samples = [_sample(loop, largest) for loop in domain.loops]

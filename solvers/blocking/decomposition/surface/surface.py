@@ -91,7 +91,7 @@ class Triangulation:
 
     @cached_property
     def edge_weights(self) -> Floats:
-        """(t, 3) minus half the cotangent of the angle opposite to each edge.
+        """(t, 3) the cotangent of the angle opposite to each edge, times -1/2.
 
         This equals the integral over the triangle of the product of both end points' `gradients`.
         """
@@ -122,8 +122,7 @@ class Triangulation:
 def split_edges_between_walls(triangulation: Triangulation) -> Triangulation:
     """Return the triangulation with a new vertex on every interior edge that joins two wall vertices.
 
-    Without the new vertices, the map of the triangulation would collapse triangles with two edges on one
-    wall, and would have no singularity in gaps that are one triangle wide.
+    Otherwise a triangle with two edges on one wall would have no area in the map to coordinates u, v.
     """
     boundary = len(triangulation.arc)
     while True:

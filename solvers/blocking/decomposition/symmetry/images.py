@@ -51,8 +51,8 @@ def agree(images: Images) -> bool:
 def made_symmetric(mesh: QuadMesh, images: Images | None = None) -> QuadMesh:
     """Return the mesh with each node at the mean of itself and its mirror images.
 
-    `images` are the images of nodes, by default in all mirrors. If they are inconsistent (see `agree`), as in
-    a ring of an odd number of quads, only the first mirror is used. Corners do not move.
+    `images` are the images of nodes, by default in all mirrors. If `agree` is false for them, only the first
+    mirror is used. Corners do not move.
     """
     images = images_of(mesh) if images is None else images
     if not agree(images):

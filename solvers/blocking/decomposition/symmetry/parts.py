@@ -28,15 +28,15 @@ Ray = tuple[Mirror, Floats]  # a mirror, and the direction (2,) of the ray on it
 
 @dataclass(frozen=True, eq=False)
 class LoopPart:
-    """A part of a boundary loop between two rays (halves of mirror lines), or the point where rays meet."""
+    """A part of a boundary loop from one mirror line to another, or only the point where these lines meet."""
 
     loop: int  # index of the loop; -1 for the centre
     arcs: Floats  # (n,) ascending arc lengths
     points: Floats  # (n, 2) points at these arc lengths
-    corners: Indices  # indices of the points that are corners, including those on rays
+    corners: Indices  # indices of the points that are corners, including those on mirror lines
     breaks: Indices  # indices of the points at which the tangent may jump
     straight: Bools
-    """(n,) whether the line to the next point is straight, as it is from the last point along a ray."""
+    """(n,) whether the line to the next point is straight, as it is from the last point along a mirror."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ class DomainPart:
     Parameters
     ----------
     whole : the whole domain.
-    domain : the part as a domain; its outer loop begins on the first ray.
+    domain : the part as a domain; its outer loop begins on the first of `rays`.
     stretches : parts of loops of the whole domain that bound the part.
     holes : indices of the loops of the whole domain inside the part.
     rays : the mirrors that bound the part.
@@ -63,7 +63,7 @@ class DomainPart:
 
 
 def spans_between(loop: Loop) -> list[Span]:
-    """Return the parts of a loop between corners with one cell; corners inside a part have two cells."""
+    """Return the parts of a loop from a corner with one cell to the next; corners between have two cells."""
     corners = zip(loop.corner_arcs.tolist(), loop.corner_cells.tolist(), strict=True)
     turns = [(arc, cells) for arc, cells in corners if cells != 2]
     pairs = pairwise([*turns, *((arc + loop.length, cells) for arc, cells in turns[:1])])
@@ -86,9 +86,9 @@ def part_of(domain: Domain, mirrors: Sequence[Mirror]) -> DomainPart:
 
 
 def sector_of(domain: Domain, mirrors: Sequence[Mirror], start: int) -> DomainPart:
-    """Return the sector from mirror `start` to mirror `start` + 2; `mirrors` are sorted by angle.
+    """Return the sector from mirror line `start` to the next but one, whose rotated copies fit together.
 
-    Raises SolverError if a mirror cuts a sharp corner, or if the mirrors meet outside the domain.
+    `mirrors` are sorted by angle. Raises SolverError if one cuts a sharp corner or they meet off the domain.
     """
     count = len(mirrors)
     first, middle, last = (mirrors[k % count] for k in range(start, start + 3))

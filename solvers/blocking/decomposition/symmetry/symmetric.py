@@ -44,9 +44,9 @@ def symmetric_blocks(
     """Return symmetric blocks of the domain of `blocks`, or `blocks` if symmetric blocks are clearly worse.
 
     The score of symmetric blocks may be worse by `worth`. The given blocks are kept if they are symmetric,
-    unless blocks made from a part of the domain are better and not more numerous. Symmetry about more mirrors
-    is preferred. `find` returns the mesh of a part. `unsized` returns a mesh without prescribed edge lengths,
-    which is tried last.
+    unless mirrored blocks of a part of the domain are better and not more numerous. Symmetry about more
+    mirrors is preferred. `find` returns the mesh of a part. `unsized` returns a mesh without prescribed edge
+    lengths, which is tried last.
     """
     mesh, every = blocks.mesh, mirrors_of(blocks.mesh.domain)
     pair = every[:1] if len(every) % 2 else every[:: max(len(every) // 2, 1)]
