@@ -201,7 +201,7 @@ cdef class VariationalDescent:
             double reach, int most, listener=None):
         """Minimise from the planes z (2, ni, nj), in place; return (functional, smallest Jacobian, iterations).
 
-        It stops if no node moves by more than `still` cells in three consecutive iterations, or after `most`
+        It stops if no node moves by more than `still` cells in two consecutive iterations, or after `most`
         iterations. In the first no node moves by more than `reach` cells. `listener` is called with the iterations
         done, the functional and the norm of its gradient, at the start and after each iteration.
         """

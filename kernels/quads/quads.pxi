@@ -188,7 +188,7 @@ cdef class QuadDescent:
     def run(self, double shape, double smoothness, double epsilon, double size, double gain, int most, bint renew, double steep=0.0, double limit=0.0):
         """Minimise; return (functional, smallest ratio of a Jacobian to the area of its cell, iterations).
 
-        It stops if the functional falls by less than the fraction `gain` in each of three iterations, or after `most`.
+        It stops if the functional falls by less than the fraction `gain` in each of two iterations, or after `most`.
         With `renew` the preconditioner is first updated to the current nodes. `steep` is the weight of ratios of
         neighbouring lengths whose logarithms exceed `limit`.
         """

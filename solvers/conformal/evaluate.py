@@ -28,7 +28,7 @@ class StripGrid:
 
     They are complex numbers F + i theta. F depends on theta, which goes around the body, and on `eta` (nj,),
     which ascends from 0 on the wall to 1. `c` (2 MODES + 1, LEVELS) are the Fourier modes of F at Chebyshev
-    points, `wall` and `far` (n,) its values at the nodes of wall and far field.
+    points of eta, `wall` and `far` (n,) the values of F at the nodes of wall and far field.
     """
 
     def __init__(self, c: Complexes, wall: Complexes, far: Complexes, eta: Floats) -> None:

@@ -47,7 +47,7 @@ class Field:
         return cls(sources, places, np.ascontiguousarray(areas[sources]), near, where)
 
     def blended(self, motions: Floats) -> Floats:
-        """Return the displacements (m, d) of `points`; source k moves by ``motions[:, k]`` (see `affine`)."""
+        """Return the displacements (m, d) of `points`, weighted means of the sources' motions (`affine`)."""
         moved = np.empty_like(self.points)
         blend_motions(self.places, self.areas, motions, self.near, self.points, thread_count(), moved)
         return moved.T
@@ -110,7 +110,7 @@ class Follow:
         return affine(old[at], there[at], turns)
 
     def along_sides(self, move: Floats, there: Floats) -> Floats:
-        """Make displacements `move` (n, d) tangential to sliding sides that are flat, now and at `there`."""
+        """Make displacements `move` tangential to sliding sides that are flat, also at new nodes `there`."""
         for piece in self.sources.sliding:
             normal = normal_of(self.table, piece, there)
             if normal is not None:

@@ -40,7 +40,7 @@ class Turning:
         return np.bincount(self.edges.ravel(), shares, n).astype(np.float64, copy=False)
 
     def angles_along(self, new: Floats, moves: Floats) -> Floats:
-        """Return the directional derivative (n,) of `angles` at nodes `new` (n, 2) along `moves` (n, 2)."""
+        """Return the directional derivative (n,) of rotation angles at nodes `new` (n, 2) along `moves`."""
         slope, way = self._slopes(new), moves[self.edges[:, 1]] - moves[self.edges[:, 0]]
         return self._at_nodes((slope * way).sum(axis=1), len(new))
 

@@ -39,7 +39,7 @@ def solve_steger_sorenson(
 ) -> Solution:  # fmt: skip
     """Solve Winslow's equations with sources that control angles and first-cell heights at edges.
 
-    First cells are at least about half as high as without sources. Notes state the remaining error of the
+    A height below half of that without sources is raised to this half. Notes state the remaining error of the
     angles, and whether sources were weakened because cells folded.
 
     Parameters

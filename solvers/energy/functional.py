@@ -19,7 +19,7 @@ class Weights:
     """Weights w and β of the functional E.
 
     u and v are the edges along xi and eta at a corner of a cell, or their means at its centre. Then g = |u|²,
-    h = |v|² and J = u × v. a is the aspect ratio (`aspect_of`). Δ is the difference of neighbouring edges::
+    h = |v|² and J = u × v. a is the aspect ratio (`aspect_of`), Δ a difference between neighbouring edges::
 
         T = (1-w) (a g + h/a) / (2J) + w (g h / J²)²
         S = mean over cells of ((ni-1) Δ_i log l)² + ((nj-1) Δ_j log l)²,  with lengths l of edges

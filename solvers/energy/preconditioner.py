@@ -42,7 +42,7 @@ class Descent:
 
         The iteration ends if nodes move by less than `still` cell sizes, or after `most` iterations. The area
         `epsilon` regularises Jacobians. `relief` (ni,) are factors of angle terms at the wall (`relief_of`).
-        `listener` gets the number, value and gradient norm, before the first and after each iteration.
+        `listener` gets iteration number, value and gradient norm, before the first and after each iteration.
         """
         return self.minimiser.run(self._z, *self._terms, epsilon, relief, still, REACH_CELLS, most, listener)
 

@@ -34,7 +34,7 @@ class Walls:
 
 
 def walls_of(mesh: QuadMesh, fixed: Bools, tied: Bools) -> Walls | None:
-    """Return the walls of a mesh, with arc lengths of nodes that increase from edge to edge along each wall.
+    """Return the walls of a mesh, with nodes whose arc lengths increase from edge to edge along each wall.
 
     `fixed` (n,) is the mask of fixed nodes. `tied` (n,) is the mask of nodes on periodic sides, which are no
     walls. Nodes that are not fixed are moved if necessary. Returns None if fixed nodes prevent an increase.

@@ -62,7 +62,7 @@ class Measures:
     slack: Floats | float = 1.0
 
     def at(self, places: Floats, closed: bool) -> Floats:
-        """Return the values (k, n) of the functions at positions `places` (n,), maybe in further turns."""
+        """Return the k functions (k, n) at positions `places` (n,), on closed curves in any turn."""
         turns = np.zeros(len(places))
         if closed:
             turns, places = np.divmod(places, self.arcs[-1])
@@ -113,7 +113,7 @@ def evened_places(
     The functions `measures` turn positions into lengths; steps are the differences of successive lengths.
     Positions in the mask `fixed` (n,) stay. `limit` is the logarithm of the largest ratio; it is relaxed if
     positions would move by more than `most` steps. On a `closed` curve, the last step leads to the first
-    position. `links` are further conditions. `change` is the weight of the change of ratios.
+    position. `links` are further conditions. `change` weights the penalty on changes of ratios.
     """
     line = _Line.of(places, fixed, measures, closed, links, change)
     new = places

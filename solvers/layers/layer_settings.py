@@ -73,7 +73,7 @@ class LayerSettings:
 
     @property
     def elsewhere(self) -> float:
-        """Logarithm of the largest ratio of neighbouring cells along lines that do not leave walls."""
+        """Logarithm of the largest ratio of neighbouring cell sizes along lines that do not leave walls."""
         return max(ELSEWHERE * math.log(self.limit or self.growth), math.log(MOST_GROWTH))
 
     @property

@@ -18,7 +18,7 @@ OURS = "use a file made by meshonet train"  # remedy for a file that is no model
 
 
 class Kind(NamedTuple):
-    """A kind of model file, with `text` as the ``kind`` in its header, and `version` as the entry `key`."""
+    """A kind of model file: its header has `text` under the name ``kind``, `version` under that in `key`."""
 
     text: str
     key: str

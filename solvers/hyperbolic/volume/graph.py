@@ -18,7 +18,7 @@ _WIDTH, _FALL = 4, 0.35  # rings of nodes around irregular ones that are smoothe
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """A neighbour, maybe a ghost, of a node x, at `own` x + `sign` y + `shift`; y is the node `base`."""
+    """A neighbour of a node x, maybe a ghost node, at `own` x + `sign` y + `shift`; y is the node `base`."""
 
     base: int
     own: float = 0.0

@@ -47,7 +47,7 @@ class Functional:
     def hessian(self, nodes: Tensor, aspect: Tensor, *, convex: bool = False) -> Stencil:
         """Return second derivatives of the functional by `nodes` (batch, 2, ni, nj) without folded cells.
 
-        `aspect`, as in `value`, counts as a constant. `convex` returns a positive definite approximation.
+        `aspect`, by `aspect_of`, counts as a constant. `convex` returns a positive definite approximation.
         """
         zero = nodes.new_zeros(len(nodes), 2, 2, *nodes.shape[2:])
         offsets = ((0, 0), (0, 1), (0, 2), (1, -1), (1, 0), (1, 1), (2, 0))

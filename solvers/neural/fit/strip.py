@@ -71,7 +71,7 @@ class StripTask(Task):
         return {"loss": median, "p90": p90, "worst": worst}
 
     def answers(self) -> list[Complexes]:
-        """Return for each held-out body the network's prediction of `Strips.residual`."""
+        """Return for each held-out body predicted modes of Winslow's solution minus the harmonic one."""
         channels, scalars, size = encode(self.held_out.wall, self.held_out.far)
         with torch.no_grad():
             out = self.net(tensor(channels).to(self.device), tensor(scalars).to(self.device)).cpu()

@@ -36,7 +36,7 @@ class Architecture:
     sensors: int = 50  # points of the boundary that the branches read, m in the paper
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the array shapes of the trained parameters, by name; `frame` tells the training grids."""
+        """Return the array shapes of the trained parameters, by name; `frame`: size of the training grids."""
         raise NotImplementedError
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
