@@ -53,7 +53,7 @@ class RowSizes:
 
     @classmethod
     def of(cls, domain: Domain, number: int, stretches: Sequence[Stretch], settings: LayerSettings) -> Self:
-        """Return cell sizes along loop `number`, with layers on its parts `stretches`; all around if empty."""
+        """Return cell sizes along loop `number` with layers on its parts `stretches`; all around if empty."""
         loop = domain.loops[number]
         arcs, length = sizes_by_bend(loop, loop.length / COLUMNS, TURN)
         gap = _gaps(domain, number, arcs)
