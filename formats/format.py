@@ -79,7 +79,7 @@ class Format:
         return str(place / f"{place.resolve().name}{self.suffixes[0]}")
 
     def with_options(self, text: str) -> Format:
-        """Return the format with comma-separated options; after a colon, they override those before.
+        """Return the format with comma-separated options; those after a colon override those before it.
 
         Raises InputError if an option is unknown, or if two with no colon between them exclude each other.
         """

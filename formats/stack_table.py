@@ -109,7 +109,7 @@ def along(row: Table, direct: str, angle: str, z: float, before: list[Section]) 
 def section_shape(row: Table, folder: Path) -> Airfoil | Outline:
     """Return the shape of a section from its table; paths are relative to `folder`.
 
-    Raises InputError unless the table has one of the keys `airfoil` and `outline`, and it names one shape.
+    Raises InputError unless exactly one of the keys `airfoil` and `outline` is given, and names one shape.
     """
     keys = [key for key in ("airfoil", "outline") if key in row.data]
     remedy = "name one file, or a designation such as naca:2412"

@@ -216,7 +216,7 @@ def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tup
 def line_step(length: Floats, area: Floats, pixels: float) -> int:
     """Return k = 1, 2, 5, 10, ... such that every k-th line is drawn, usually 6 pixels or more apart.
 
-    `length` (n,) are distances between lines, `area` (n,) areas of cells; `pixels` is per unit of length.
+    `length` (n,) are distances between lines, `area` (n,) areas of cells, `pixels` pixels per unit of length.
     """
     length = length * pixels
     order = np.argsort(length)

@@ -78,7 +78,7 @@ def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> 
 
 
 def planar(coordinates: Sequence[Floats]) -> Floats:
-    """Return the nodes (ni, nj, 2) of a plane, or of shifted copies of one. Raises InputError: neither."""
+    """Return nodes (ni, nj, 2) from x, y[, z] of a plane or of shifted copies. Raises InputError: neither."""
     with np.errstate(all="ignore"):
         cut = _slice_of(coordinates, most=max(coordinates[0].shape))
         if cut:

@@ -35,7 +35,7 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 
 
 def write_map(path: Path, grids: Sequence[Grid], span: int = 2) -> None:
-    """Write the neutral map of all blocks; `span` is the place of index k in the file: 0, 1 or 2."""
+    """Write the neutral map of all blocks. In the file, index k of a grid has the place `span`: 0, 1 or 2."""
     dims: list[list[int]] = []
     rows: list[str] = []
     for grid in grids:

@@ -52,7 +52,7 @@ def read_block(source: Source) -> tuple[list[Floats], Facts]:
 
 
 def vtk_root(text: bytes, kind: str) -> Element:
-    """Return the root of a VTK file. Raises InputError if it is not XML, has a DOCTYPE or another `kind`."""
+    """Return the root of a VTK file. Raises InputError if it is no XML of this `kind` or has a DOCTYPE."""
     from xml.etree.ElementTree import ParseError, fromstring
 
     if b"<!" in text.replace(b"<!--", b"") or b"\0" in text:

@@ -172,7 +172,7 @@ def wake_cells(connections: Sequence[Connection]) -> int:
 def wake_nodes(south: Floats) -> int:
     """Return how many nodes at the start of `south` (ni, 2) are repeated in reverse order at its end.
 
-    If all nodes are repeated, no body is left between them, and the result is 0.
+    If all nodes are repeated, they enclose no body, and the result is 0.
     """
     half = south[: len(south) // 2]
     differs = (half != south[::-1][: len(half)]).any(axis=1)

@@ -61,7 +61,7 @@ def outer_patches(
 
 
 def rectangles(owners: NDArray[np.intp]) -> Iterator[tuple[int, Range]]:
-    """Yield rectangles of cells at a side that have the same patch: its index, and index range of the nodes.
+    """Yield rectangles of cells at a side with the same patch: index of the patch, index range of the nodes.
 
     Cells at a connection (`JOINED`) are left out. `owners` (n,) or (n, m) is the result of `owners_of`.
     """

@@ -49,7 +49,7 @@ class Corner:
 
 @dataclass(frozen=True)
 class Lift:
-    """The conformal map from the plane z around a body to a strip w = psi + i phi (see `lift_body`).
+    """The conformal map from the plane z around a body to a strip w = psi + i phi of period 2 pi.
 
     Joukowski's map z = centre + quarter (zeta + 1/zeta) comes first. `corners` are the maps that straighten
     corners of the body. `pole` is the centroid of the wall after all these maps. `phase` is subtracted from
@@ -63,7 +63,7 @@ class Lift:
     phase: Any
 
     def to_plane(self, w: Any, xp: Any = np) -> Any:
-        """Return the points around the body that are mapped to `w` (any shape); `xp` is numpy or torch."""
+        """Return the points z that are mapped to `w` (an array of any shape); `xp` is numpy or torch."""
         zeta = self.pole + functions_of(xp).exp(w + 1j * self.phase)
         for corner in reversed(self.corners):
             zeta = corner.restore(zeta)
@@ -81,7 +81,7 @@ def mirrored(nodes: Floats) -> Complexes:
 
 
 def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, tuple[int, ...]]:
-    """Return the conformal map of a body, its wall (n,) mapped to the strip, and the indices of its corners.
+    """Return the conformal map around a body, the mapped wall (n,), and the indices of the body's corners.
 
     `wall` (n,) runs counter-clockwise from the trailing edge, without its repeated first node. The corners of
     a blunt trailing edge are straightened one after another, with `swap` in the opposite order. Two bodies

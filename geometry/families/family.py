@@ -81,7 +81,7 @@ def arch(height: float, ni: int, nj: int) -> Boundary:
 
 
 def hexagon(angle: float, ni: int, nj: int) -> Boundary:
-    """Case 2: return a unit square whose top and bottom have a kink with the interior angle `angle`, degrees.
+    """Case 2: return a unit square whose top and bottom have a kink of the interior angle `angle` (degrees).
 
     The kinks are at (1/2, 1 + h) and (1/2, -h) with h = 1/(2 tan(angle/2)).
     """

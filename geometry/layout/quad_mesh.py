@@ -151,7 +151,7 @@ class QuadMesh:
         return np.asarray(known[off.argmin(axis=1)])
 
     def beside_partners(self, nodes: Floats) -> Floats:
-        """Return `nodes` (n, 2), in which each with a periodic partner is the partner moved by the period."""
+        """Return `nodes` (n, 2); each node with a periodic partner is the partner, moved by the period."""
         images = np.flatnonzero(self.places.partner >= 0)
         if images.size and self.domain.periodic:
             nodes = nodes.copy()

@@ -29,7 +29,7 @@ class Criteria:
         return any(gate.statistic in ("p01", "p99") for gate in self.gates)
 
     def judge(self, grid: Grid, quality: Quality) -> Judgement:
-        """Return the judgement of `grid`. Raises InputError if a limit is on a quantity that it lacks."""
+        """Return the judgement of `grid`. Raises InputError if a limit is on a quantity that `grid` lacks."""
         from meshonet.geometry.quality.figures import Figures
         from meshonet.geometry.quality.profiles import profile_report
         from meshonet.geometry.quality.report import QualityReport
