@@ -108,7 +108,7 @@ class Factor:
         return x.reshape(np.shape(right))
 
     def refine(self, matrix: SparseMatrix, right: Floats, steps: int) -> Floats:
-        """Return the solution of ``matrix x = right`` by iterative refinement; `matrix` is close to A."""
+        """Return the solution of ``matrix x = right`` after `steps` refinements; `matrix` is close to A."""
         x = self.solve(right)
         for _ in range(steps):
             x += self.solve(right - matrix.times(x))

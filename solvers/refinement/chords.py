@@ -61,7 +61,7 @@ class Chords:
         return cls(layout, tuple(edges), sides, turned, wall, partner, chord, count, images)
 
     def of_refined(self, layout: Layout) -> "Chords":
-        """Return the chords of a `layout` with the same blocks as this object's, but other cell counts."""
+        """Return the chords (sets of opposite edges) of a `layout` with the same blocks, but other counts."""
         return replace(Chords.of(layout), chord=self.chord, count=self.count)
 
     @cached_property
@@ -129,7 +129,7 @@ class Chords:
         return int((along[:, 0] * along[:, 2]).sum())
 
     def along_loops(self, counts: Indices) -> Indices:
-        """Return the numbers (loops,) of wall cells on boundary loops, from `counts` (chords,) of chords."""
+        """Return the numbers of wall cells (loops,) on boundary loops, from cell `counts` (chords,)."""
         mesh = self.layout.mesh
         along = np.zeros(len(mesh.domain.loops), dtype=np.intp)
         for edge in np.flatnonzero(self.wall):

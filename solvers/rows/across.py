@@ -54,10 +54,10 @@ class ChannelLines:
         return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
     def weights(self, pairs: Floats) -> Floats:
-        """Return factors (p,) from the square of `aside` to that of the lean, for pairs of places (p, 2)."""
+        """Return factors (p,) that turn squares of `aside` into squares of lean (see `links`), for `pairs`."""
         return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
 
     def aside(self, pairs: Floats) -> Floats:
-        """Return (p,) the place opposite the first of each pair of places (p, 2), minus the second place."""
+        """Return for pairs of places (p, 2), from 0 to 1, the place opposite the first, minus the second."""
         upper, lower = (wrapped(each, _FROM) for each in (pairs[:, 0], 1.0 - pairs[:, 1]))
         return np.asarray(lower - np.interp(upper, self.upper, self.lower))

@@ -14,7 +14,7 @@ def exact_in_corners(
     nodes: Floats, begins: tuple[Floats, Floats], sizes: tuple[float, Floats],
     in_space: Callable[[Floats], Floats],
 ) -> Floats:  # fmt: skip
-    """Return `nodes`, each moved along its lines to two points until its distances from them are as given.
+    """Return `nodes`, each moved towards or away from two points until it has given distances from both.
 
     Parameters
     ----------

@@ -104,7 +104,7 @@ def planned(
     Parameters
     ----------
     coarse : result of `coarse_section` for the middle section; None: it is computed.
-    longest : greatest length in all sections of the straight grid lines at `INLET`, `OUTLET` (the keys).
+    longest : for the keys `INLET` and `OUTLET`, greatest length in any section of the straight grid lines.
     wake : as in `SectionPlan`.
     gaps : whether the blade ends in a gap at the hub, and at the casing.
     """

@@ -45,7 +45,7 @@ def middle_section(
 
     Parameters
     ----------
-    longest : greatest length in all sections of the straight grid lines at `INLET`, `OUTLET` (the keys).
+    longest : for the keys `INLET` and `OUTLET`, greatest length in any section of the straight grid lines.
     coarse : result of `coarse_section`; None: it is computed.
 
     Raises NoValidGridError if cells are folded.

@@ -59,7 +59,7 @@ class Rise:
         return replace(self, deep=self.deep[part], moves=self.moves[part])
 
     def shares(self, heights: Floats) -> Floats:
-        """Return the fractions (levels, k) of `moves` for k grid lines at `heights` (levels, k), 0 to 1."""
+        """Return fractions (levels, k) of the displacements `moves` at `heights` (levels, k) in the span."""
         off = self.up * (heights - self.end)
         away = np.where(off > 0.0, off / self.gap, -off / self.deep)
         return np.asarray(smooth_step(np.clip(1.0 - away, 0.0, 1.0)))
@@ -83,9 +83,9 @@ def raise_layers(
     Parameters
     ----------
     rises : the displacements.
-    space : (levels, k, rows, 3) nodes of k columns of layers, at levels (indices along the span).
+    space : (levels, k, rows, 3) nodes of k grid lines through the layers, at levels (indices along the span).
     heights : (levels, k) heights of the nodes on the blade, 0 at the hub and 1 at the casing.
-    ends : levels at which the blade or a gap ends; a level next to each; wanted distances between the two.
+    ends : levels at which the blade or a gap ends; a level next to each; prescribed distances of the two.
     first : height of first cells at the blade.
     """
     rows = space.shape[2]

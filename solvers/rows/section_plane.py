@@ -136,7 +136,7 @@ class SectionPlane:
         return np.interp(np.mod(arcs, self._walls[-1]), self._walls, np.append(self.places, 1.0))
 
     def front_arcs(self, u: Floats) -> Floats:
-        """Return arc lengths (n,) on the outer edge of the layers where lines from places `u` (n,) end."""
+        """Return arc lengths (n,) on the layers' outer edge at the ends of lines from places `u` (n,)."""
         ring = self.cascade.ring
         length, start = self._walls[-1], ring.arcs[0]
         walls = np.append(ring.arcs, start + length)
@@ -177,7 +177,7 @@ class SectionPlane:
         return np.interp(points[:, 0], self._stations, _SHARES)
 
     def stations(self, shares: Floats) -> Floats:
-        """Return the coordinate m' (n,) along the flow for positions as they are returned by `shares`."""
+        """Return the coordinate m' (n,) along the flow at positions `shares` (n,), defined as in `shares`."""
         return np.interp(shares, _SHARES, self._stations)
 
     def camber(self, shares: Floats) -> Floats:

@@ -31,7 +31,7 @@ _LEAST = 0.35  # smallest ratio of a step between neighbouring nodes to the same
 
 @dataclass(frozen=True, eq=False)
 class SpanPlaces:
-    """Places u of k nodes around a blade, as functions of the height. See `SectionPlane` for u, 0 to 1."""
+    """Places of k nodes around a blade, from 0 to 1 (u of `SectionPlane`), which are linear in the height."""
 
     ends: tuple[Floats, Floats]  # places u (k,) at the hub and at the casing
     gaps: tuple[bool, bool]  # whether the blade ends there in a gap; then each node at u has one at 1 - u

@@ -81,9 +81,9 @@ def smooth_arcs(lengths: Floats, ends: tuple[Floats | float, Floats | float | No
 def smooth_cells(
     length: Floats | float, ends: tuple[Floats | float, Floats | float | None], growth: float, least: int
 ) -> int:
-    """Return the smallest number of cells with which `smooth_arcs` grow by up to `growth`; it is >= `least`.
+    """Return the smallest number of cells, from `least` on, whose ratio in `smooth_arcs` is at most `growth`.
 
-    `length`, the first and the last cell length `ends` are numbers, or (n,) for n lines. None: any last cell.
+    `length` and both cell lengths `ends` are numbers, or (n,) for n lines. The last one may be None (free).
     """
     lengths = np.atleast_1d(length)
     for cells in range(max(least, 4), MOST_CELLS):
@@ -122,7 +122,7 @@ class Spacing:
 
     @classmethod
     def of(cls, lengths: tuple[float, float], ends: Ends, growth: float, cells: int) -> Self:
-        """Return the table for lines from ``lengths[0]`` to ``lengths[1]`` long, with the cells `ends`."""
+        """Return the table for lines of ``lengths[0]`` to ``lengths[1]``, with the end cells `ends`."""
         known = np.linspace(*lengths, _LENGTHS if lengths[1] > lengths[0] * (1.0 + 1e-9) else 1)
         return cls(lengths, (two_sided(known, ends, growth, cells) / known[:, None]).T)
 
@@ -147,7 +147,7 @@ class LineArcs:
 
     @classmethod
     def through(cls, samples: Floats) -> Self:
-        """Return the arc lengths of n lines with the points `samples` (k, n, 3) at the k `key_heights`."""
+        """Return the arc lengths of n lines; parameters of the k `samples` (k, n, 3) are `key_heights`."""
         speed = norms(slopes_at_keys(samples))
         arcs = integrals_at_keys(speed)
         lengths, wanted = arcs[-1], key_heights(len(samples))[:, None]

@@ -29,8 +29,8 @@ def whole_section(
     beyond : layout of the blocks beyond the layers, in m' (see `MeridionalMap`) and theta.
     layers : number of layers.
     largest : length of the longest cells.
-    longest : greatest length in all sections of the straight grid lines at `INLET`, `OUTLET` (the keys); it
-        determines the number of cells on them.
+    longest : for the keys `INLET` and `OUTLET`, greatest length in any section of the straight grid lines;
+        it determines the number of cells on them.
     """
     cascade = plane.cascade
     mesh = beyond.mesh

@@ -43,7 +43,7 @@ def wanted_lengths(mesh: QuadMesh, most: float, *, slide: bool) -> Floats:
 
 
 def thin_heights(mesh: QuadMesh) -> Bools:
-    """Return a mask (e,) of the edges that are heights of boundary cells of aspect ratios above `THIN`."""
+    """Return a mask (e,) of the edges that are heights of thin boundary cells (aspect ratio above `THIN`)."""
     cell, side = np.nonzero(mesh.on_wall[mesh.edge_of])
     ratio = mesh.aspects(mesh.edge_lengths)[cell]
     thin = np.where(side % 2 == 0, ratio < 1.0 / THIN, ratio > THIN)

@@ -54,9 +54,9 @@ class Around:
     def ends(self, height: float, length: float, nose: float | None = None) -> tuple[float, float]:
         """Return the lengths of the cells at both ends of a side of a section, as fractions of its `length`.
 
-        One end is the base (blunt trailing edge) with its `height`, the other the nose. If the attribute
-        `nose` is None, the parameter `nose` is the cell length there. All are in chords. If that is None
-        too, it is 0.35 times the mean cell of the side.
+        One end is at the base (blunt trailing edge), whose `height` is given, the other at the nose. The
+        parameter `nose` is the cell length there if the attribute `nose` is None. If both are None, it is
+        0.35 times the mean cell of the side. Parameters are in chords.
         """
         edge = min(_EDGE_CELL * max(height, self.gap) / self.base, 1.0 / self.cells)
         first = edge if self.edge is None else self.edge / length

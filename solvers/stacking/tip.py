@@ -39,7 +39,7 @@ class Cap:
     bulge: float = 1.0  # height of the cap in local half thicknesses; 0 is flat
 
     def cells(self, nodes: int) -> int:
-        """Return the cells of a cap on a closed section of `nodes`, of which the last repeats the first."""
+        """Return the number of cells of a cap; the last of the section's `nodes` nodes repeats the first."""
         return (nodes - 1) * self.rows + (nodes // 2 - 2 * self.short) * 2 * self.short
 
     def patches(self, loop: Floats) -> tuple[Floats, Floats]:

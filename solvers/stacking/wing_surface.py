@@ -41,7 +41,7 @@ class WingSurface:
 
 
 def wing_surface(stack: Stack, settings: WingSurface | None = None) -> tuple[Grid, tuple[str, ...]]:
-    """Return the surface patches of a wing, with outward normals, and notes such as thickened trailing edges.
+    """Return the surface patches of a wing, with outward normals, and notes, e.g. on thickened edges.
 
     The first block goes around the sections, upper side first, and along the span. A round or flat tip adds
     two blocks that close it: a ring, and the core inside. The edge at the root is the patch ``symmetry``.

@@ -16,8 +16,8 @@ _CLOSE = 1e-9  # of the length, to which steps fill it
 def ring_steps(lengths: Floats, sizes: Floats, rows: int, first: float | None) -> Floats:
     """Return the steps (k, rows) of k lines of `lengths` (k,); a cell of size `sizes` (k,) follows each line.
 
-    Steps change by one ratio from `first` to the size, then stay. If `first` is None, the last step has the
-    size. If a ratio above `LARGEST` were needed, steps do not fill the length (see `largest_ratio`).
+    Steps change by one ratio from `first` to the size of that cell, then stay equal; if `first` is None, they
+    only end with it. If a ratio above `LARGEST` were needed, they do not fill the line (see `largest_ratio`).
     """
     most = math.log(LARGEST)
     low, high = np.full(len(lengths), 0.0 if first else -most), np.full(len(lengths), most)
@@ -39,7 +39,7 @@ def _steps(sizes: Floats, rows: int, first: float | None, rate: Floats) -> Float
 
 
 def fewest_rows(lengths: Floats, sizes: Floats, first: float | None, growth: float) -> int:
-    """Return the smallest number of rows with which `ring_steps` may need ratios of at most `growth`."""
+    """Return a low estimate of the number of rows with which `ring_steps` has ratios up to `growth`."""
     if first is None:
         return max(1, round(float((lengths / sizes).mean())) - TRIED // 2)
     even = math.ceil(float((lengths / np.maximum(sizes, first)).max()) - _CLOSE)

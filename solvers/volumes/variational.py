@@ -43,8 +43,8 @@ def variational(
 
     Parameters
     ----------
-    max_cycles : largest number of iterations with all nodes that are optimised.
-    coarse : largest number of nodes per direction that are optimised; "auto": 33; None: those of the faces.
+    max_cycles : largest number of iterations on the optimised grid.
+    coarse : largest number of nodes per direction of this grid; "auto": 33; None: as many as on the faces.
     energy : ``angles``, for right angles and gradual changes of length, or ``shape``, for cells like cubes.
 
     Raises InputError if a setting is not positive, if an edge has no length, or if the faces are such that a

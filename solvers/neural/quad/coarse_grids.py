@@ -54,7 +54,7 @@ def transfinite(sides: Sides) -> Floats:
 
 
 def coarse_grids(sides: Sides, network: Network, head: int) -> Floats:
-    """Return the network's grids (batch, 2, m, n), x and y of m by n nodes, inside four arrays of `sides`.
+    """Return the network's grids (batch, 2, m, n), x and y of m by n nodes, in four `sides` (batch, 2, k).
 
     `head` is the index in `encoding.HEADS` of the kind of grid, Winslow or variational. Variational grids
     have 33 x 33 nodes. Winslow grids have as many as the sides, but from 33 to 65 per direction.

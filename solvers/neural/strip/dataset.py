@@ -91,7 +91,7 @@ class StripTargets:
 
 
 def make_targets(strips: Strips, count: int) -> StripTargets:
-    """Return training data for `strips` and their mirror images, with `count` functions across the strip."""
+    """Return training data for `strips` and their mirror images, with `count` basis functions (`basis`)."""
     # the mirror image F(theta) -> conj F(-theta) turns mode c_k into conj c_k
     wall, far, residual = (np.concatenate([c, c.conj()]) for c in (strips.wall, strips.far, strips.residual))
     channels, scalars, size = encode(wall, far)
