@@ -54,7 +54,7 @@ class ChannelLines:
         return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
     def weights(self, pairs: Floats) -> Floats:
-        """Return factors (p,) that turn squares of `aside` into squares of lean (see `links`), for `pairs`."""
+        """Return factors (p,) that turn squares of `aside` into squares of lean (see `links`)."""
         return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
 
     def aside(self, pairs: Floats) -> Floats:
