@@ -137,7 +137,7 @@ class Cascade:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Functions on outer edges of layers whose steps between nodes should grow slowly, by loop index."""
+        """Functions that should rise by similar steps from node to node on outer edges, by loop index."""
         return {BLADE: self.ring.along} if self.layers.limit else {}
 
     def factors_at(self, arcs: Floats) -> Floats:

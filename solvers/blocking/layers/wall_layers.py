@@ -163,7 +163,7 @@ class WallLayers:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Functions on outer edges of layers whose steps between nodes should grow slowly, by loop index."""
+        """Functions that should rise by similar steps from node to node on outer edges, by loop index."""
         measures = {k: ring.along for k, ring in self.rings.items()}
         if self.near is not None:
             ends = np.array([0.0, self.near.circle.length])
