@@ -29,8 +29,8 @@ class BlockOptions:
         "outer boundary; otherwise all are bodies in a common far field. Each wall is named after its file.",
     )
     cells: int | None = _option(
-        metavar="N", help="Approximate number of cells in all blocks together. [default: 2500; 20000 with "
-        "layers]",
+        metavar="N", help="Approximate number of cells in all blocks together. [default: 2500; with "
+        "layers 20000 around one body, 30000 around two, 40000 around more]",
     )
     cell_size: float | None = _option(
         metavar="H", help="Edge length of cells away from walls, in the unit of the input, instead of "

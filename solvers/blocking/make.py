@@ -71,7 +71,7 @@ def grid_of(
     grid = to_grid(around_body(fine), walls=request.layered).with_provenance(method=METHOD, cells=fine.cells)
     said = (
         *request.height_notes(f"on a length of {shape.unit:.6g}", shape.unit),
-        _fewer_cells(request),
+        _fewer_cells(request, len(domain.loops) - 1),
         _more_cells(fine.cells, request),
         *_at_walls(grid, domain, request.walls, height),
         *(sharp_edge_notes(fine) if height is not None else ()),
@@ -174,8 +174,8 @@ def _with_layers(
 
     numbers, stretches = layered_walls(domain, request.layered)
     size = _wanted(domain, request)[1]
-    settings = settings_of(request, height)
-    cells = 0 if size else (request.cells or request.default_cells) * request.multiple**2
+    settings, bodies = settings_of(request, height), len(domain.loops) - 1
+    cells = 0 if size else (request.cells or request.default_cells(bodies)) * request.multiple**2
     size = (size or 0.0) / request.multiple
     return layered(
         domain, numbers, settings, stretches=stretches, cells=cells, cell_size=size, layout=layout,
@@ -228,7 +228,7 @@ def _checked(domain: Domain, request: BlockRequest) -> Domain:
 
 def _wanted(domain: Domain, request: BlockRequest) -> tuple[int | None, float | None]:
     """Return the requested number of cells, or else their edge length. Raises InputError: too many cells."""
-    cells = request.cells or request.default_cells
+    cells = request.cells or request.default_cells(len(domain.loops) - 1)
     size = domain.extent / request.res if request.res is not None else request.cell_size
     if size is not None:
         size = min(size, domain.extent)
@@ -246,9 +246,9 @@ def _wanted(domain: Domain, request: BlockRequest) -> tuple[int | None, float | 
     return (cells, None) if size is None else (None, size)
 
 
-def _fewer_cells(request: BlockRequest) -> str:
+def _fewer_cells(request: BlockRequest, bodies: int) -> str:
     """Return a note if refinement leaves room for fewer cells than are the default."""
-    cells, usual = request.default_cells, request.usual_cells
+    cells, usual = request.default_cells(bodies), request.usual_cells(bodies)
     if cells == usual or request.cells or request.cell_size or request.res or request.pitch:
         return ""
     return f"{cells} cells before {{refine}} instead of {usual}: {MOST_CELLS} are the most after it"

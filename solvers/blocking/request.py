@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from meshonet.geometry.layout.layout import Layout
 
 CELLS = 2500  # default number of cells
-LAYERED_CELLS = 20_000  # default number of cells of grids with layers
+LAYERED_CELLS, PER_BODY, MOST_BODIES = 20_000, 10_000, 3
+"""Default number of cells with layers around one body; additional cells for the second and for the third."""
 MOST_HALVINGS = 8  # 65,536 times as many cells
 MOST_ALONG = 100_000  # largest number of cells along a side
 LARGEST_PITCH = 1e12  # largest pitch in the unit of the blade, so that squares of coordinates do not overflow
@@ -27,8 +28,7 @@ class BlockRequest(FirstCell):
 
     Parameters
     ----------
-    cells : number of cells. Without `cell_size` and `res`, it is by default `CELLS`, or with layers
-        `LAYERED_CELLS`.
+    cells : number of cells. Without `cell_size` and `res`, see `usual_cells` for its default.
     res : number of cells along the longest extent of the domain.
     length : reference length of the Reynolds number; None is the extent of the bodies.
     walls : names of the walls that have layers; by default those of `Domain.layered_loops`.
@@ -96,19 +96,18 @@ class BlockRequest(FirstCell):
         """Names of the walls with layers; if empty, the loops `Domain.layered_loops` have layers."""
         return self.by_wall or self.walls
 
-    @property
-    def default_cells(self) -> int:
-        """Number of cells before refinement if none is requested.
+    def default_cells(self, bodies: int) -> int:
+        """Return the number of cells before refinement if none is requested, for a number of bodies.
 
         If the refined grid would have more than `MOST_CELLS`, the number is reduced, but at most by half.
         """
-        usual, room = self.usual_cells, MOST_CELLS // self.multiple**2
+        usual, room = self.usual_cells(bodies), MOST_CELLS // self.multiple**2
         return room if usual // 2 <= room < usual else usual
 
-    @property
-    def usual_cells(self) -> int:
-        """Default number of cells of a grid that is not refined."""
-        return LAYERED_CELLS if self.at_walls else CELLS
+    def usual_cells(self, bodies: int) -> int:
+        """Return the default number of cells of a grid that is not refined, for a number of bodies."""
+        more = PER_BODY * (min(max(bodies, 1), MOST_BODIES) - 1)
+        return LAYERED_CELLS + more if self.at_walls else CELLS
 
     @property
     def multiple(self) -> int:

@@ -39,7 +39,7 @@ def make_passage(shape: DomainShape, request: BlockRequest) -> Solution:
         cascade = Cascade(domain.loops[1], request.pitch, inlet, outlet, settings, domain.name)
         if request.res is not None:
             size = cascade.extent / request.res
-        cells = request.cells or request.usual_cells
+        cells = request.cells or request.usual_cells(bodies=1)
         return cascade_layout(cascade, cells=cells, cell_size=size, timings=timings)
 
     return grid_of(shape, request, passage)

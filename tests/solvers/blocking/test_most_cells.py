@@ -27,7 +27,7 @@ def test_a_default_just_out_of_reach_is_reduced_with_a_note(most: int) -> None:
     (note,) = (note for note in solution.notes if "before {refine}" in note)
     assert note == "1500 cells before {refine} instead of 2500: 6000 are the most after it"
     layered = BlockRequest(refine=5, first_cell=1e-3)
-    assert layered.default_cells == layered.usual_cells
+    assert layered.default_cells(1) == layered.usual_cells(1)
 
 
 @pytest.mark.parametrize(
@@ -42,3 +42,9 @@ def test_what_is_far_out_of_reach_or_requested_is_refused(
 ) -> None:
     with pytest.raises(InputError, match=f"{message} .*{most} are the most"):
         make_blocks(SHAPE, BlockRequest(**words))  # type: ignore[arg-type]
+
+
+def test_more_bodies_with_layers_have_more_cells_by_default() -> None:
+    layered = BlockRequest(y_plus=1.0, reynolds=1e6)
+    assert [layered.usual_cells(bodies) for bodies in (0, 1, 2, 3, 9)] == [20000, 20000, 30000, 40000, 40000]
+    assert BlockRequest().usual_cells(3) == 2500
