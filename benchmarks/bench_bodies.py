@@ -186,22 +186,22 @@ HEAD = """# The neural operator for bodies: accuracy and time
 
 <!-- made by python benchmarks/bench_bodies.py --page docs/benchmarks/body-operator.md -->
 
-Read this page to decide whether the neural network `hole-o` is accurate enough for your O grids around
-bodies. `hole-o` predicts the grid of the variational solver. A second output of the same
-[network](../theory/operators.md), `hole-winslow`, predicts the grid of Winslow's solver. CPU times
-are medians, for one thread.
+Read this page to decide whether the neural network `hole-o` is accurate enough for O grids around bodies.
+`hole-o` predicts the grid of the variational solver. The network's second [output](../theory/operators.md),
+`hole-winslow`, predicts the grid of Winslow's solver. CPU times are medians for one thread.
 
 - *TFI*: transfinite interpolation.
 - *Winslow*, *variational*: the solvers `solve-pde --method winslow` and `solve-pde --method variational`.
 - *--coarse 65*: the solver runs on 65 x 65 nodes, and its grid is interpolated to all nodes.
-- *--polish n*: n solver iterations after the network. They are iterations of the variational solver for
-  `hole-o`, multigrid cycles of Winslow's solver for `hole-winslow`. *off*: none.
-- *valid*: share of grids without folded cells, before `infer` or `solve-pde` repairs them.
+- *--polish n*: n iterations of the variational solver after `hole-o`, or n multigrid cycles of Winslow's
+  solver after `hole-winslow`. *off*: none.
+- *valid*: share of grids without folded cells, before repair.
 - *largest angle*, *mean angle*: each cell has a largest angle. The columns give the maximum and the mean of
   these angles over the cells of a grid, averaged over the bodies.
 - *gain in mean angle*: 0 % is the mean angle of Winslow's grids, 100 % that of variational grids. Bodies
   whose Winslow grid has folded cells do not count.
-- *distance*: RMS distance of nodes from Winslow's converged grid, divided by that from their centroid.
+- *distance*: RMS distance of the nodes from Winslow's converged grid, divided by the RMS distance of that
+  grid's nodes from their centroid.
 
 Bodies for which Winslow's or the variational solver ends with an error are left out: 2 of 40.
 """

@@ -75,7 +75,7 @@ TAIL = """
 - **Memory** does not grow with the number of grids: 63 MB after 100,000 grids, 64 MB after a million.
 - **Writing** takes 0.3 ms per grid. The index file of 1,000 parts takes 4 s.
 - **Reading** the nodes of a sample takes 5 ms with 1,000 parts and 46 ms with 10,000 parts. By default a part
-  therefore has 1,000 grids, or fewer if it would exceed 256 MiB.
+  has 1,000 grids, or fewer if it would exceed 256 MiB.
 - **Zarr** takes 1.6 ms to read a sample from 200 files, HDF5 0.6 ms.
 """
 READER = """

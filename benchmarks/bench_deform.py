@@ -49,16 +49,16 @@ Methods:
 
 - *IDW*: inverse-distance weighting of the displacements of the boundary nodes, with weights r^-3 at the
   distance r (Witteveen, Bijl, AIAA 2009-3996).
-- *IDW, rotations*: weighting of displacements and rotations, with the exponents -3 and -5 (Luke, Collins,
+- *IDW, rotations*: displacements and rotations, with weights r^-3 + c r^-5 and a constant c (Luke, Collins,
   Blades, J. Comput. Phys. 231 (2012) 586-601).
-- *deform*: as *IDW, rotations*, but with the exponents -2 and -4, and distant boundary nodes in groups. If
+- *deform*: as *IDW, rotations*, but with weights r^-2 + c r^-4, and distant boundary nodes in groups. If
   cells are folded, `deform` repeats the deformation in several steps (here for {steps} deformations).
 
 Columns:
 
 - *first-cell change*: largest relative change of a first-cell height.
-- *angle increase*: by how much the largest cell angle increases, in the worst of the grids.
-- *CPU*: CPU time to compute a new grid in memory, median / 90th percentile.
+- *angle increase*: increase of the largest cell angle, in the worst grid.
+- *CPU*: CPU time for a new grid in memory, median / 90th percentile.
 
 """
 TAIL = """

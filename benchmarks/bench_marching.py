@@ -33,8 +33,8 @@ HEAD = """# Volumes marched from surfaces: quality and time
 Use this page to find the quality and the CPU time of volumes that `solve-pde --method hyperbolic` [marches
 from surfaces](../guide/marching-surfaces.md). Times are for one thread of {machine}.
 
-- *bwb*: blended wing body. *m6_small*: ONERA M6 wing. These two, *even_sphere* and *uneven_sphere* are read
-  from files.
+- *bwb*: blended wing body. *m6_small*: ONERA M6 wing. *even_sphere*, *uneven_sphere*: spheres. All four are
+  read from files.
 - *star*, *dented*: deformed spheres. *wing, ring and core*: wing whose tip is a patch with a ring of patches
   around it.
 - *levels*: number of nodes along a grid line from the surface to the far field.

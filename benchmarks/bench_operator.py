@@ -255,9 +255,9 @@ Terms and columns:
 - *grids without folded cells*: share of the grids, before repair.
 - *distance*: root mean square distance of the nodes from those of a reference grid, divided by the root mean
   square distance of the reference nodes from the centre of the shape.
-- *reference grid*: Winslow's converged solution, extrapolated from two grids; the finer of them has 2 or 4
-  times as many cells in each direction as the tested grid. Its error is about 1e-4 for uniform spacing. For
-  the rows *variational* and *quad-general* the reference grid is that of the row *variational, all nodes*.
+- *reference grid*: Winslow's converged solution, extrapolated from two grids; the finer has 2 or 4 times as
+  many cells per direction as the tested grid. The error of this solution is about 1e-4 for uniform spacing.
+  For the rows *variational* and *quad-general* the reference grid is the row *variational, all nodes*.
 - *near the wall*: only nodes within 1.5 chords of the centre of the airfoil. In four-sided domains:
   at each side, the nearest 10 % of the rows.
 - *largest angle*, *mean angle*: each cell has a largest angle. The columns give the maximum and the mean of

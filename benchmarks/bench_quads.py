@@ -220,23 +220,24 @@ HEAD = """# The neural operator for four-sided domains: accuracy and time
 
 <!-- made by python benchmarks/bench_quads.py --page docs/benchmarks/quad-operator.md -->
 
-Use this page to decide whether the grids of the neural network `quad-general` are good enough for your
-batches of four-sided domains. `quad-general` predicts the grid of the variational solver. A second output of
-the same [network](../theory/operators.md), `quad-winslow`, predicts the grid of Winslow's solver. CPU times
-are medians, for one thread.
+Use this page to decide whether the grids of the neural network `quad-general` are good enough for batches of
+four-sided domains. `quad-general` predicts the grid of the variational solver. The network's second
+[output](../theory/operators.md), `quad-winslow`, predicts the grid of Winslow's solver. CPU times are medians
+for one thread.
 
 - *TFI*: transfinite interpolation.
 - *Winslow*, *variational*: the solvers `solve-pde --method winslow` and `solve-pde --method variational`.
 - *--coarse n*: the solver runs on n x n nodes, and its grid is interpolated to all nodes.
-- *--polish n*: n solver iterations after the network. They are iterations of the variational solver for
-  `quad-general`, multigrid cycles of Winslow's solver for `quad-winslow`. *off*: none.
-- *valid*: share of grids without folded cells, before `infer` or `solve-pde` repairs them.
+- *--polish n*: n iterations of the variational solver after `quad-general`, or n multigrid cycles of
+  Winslow's solver after `quad-winslow`. *off*: none.
+- *valid*: share of grids without folded cells, before repair.
 - *largest angle*, *mean angle*: each cell has a largest angle. The columns give the maximum and the mean of
   these angles over the cells of a grid, averaged over the domains.
 - *gain in mean angle*: 0 % is the mean angle of Winslow's grids, 100 % that of variational grids. Domains
   whose Winslow grid has folded cells do not count. A gain can exceed 100 %, because the variational method
   does not minimise the mean angle itself.
-- *distance*: RMS distance of nodes from Winslow's converged grid, divided by that from their centroid.
+- *distance*: RMS distance of the nodes from Winslow's converged grid, divided by the RMS distance of that
+  grid's nodes from their centroid.
 """
 TAIL = """
 ## Conclusions

@@ -224,7 +224,7 @@ arches (geometries) of 101 x 101 nodes. Times are CPU times of one thread.
 - *--batch B --points P*: a step uses B random geometries and P random points. The learning rate is 0.004.
 - *speed*: geometries that training uses per second, best of twelve rounds of 25 steps.
 - *relative speed*: speed divided by the speed of *one geometry per step, 1,200 random points*.
-- *loss after n geometries*: loss over all points of all grids, after as many steps as use n geometries. Three
+- *loss after n geometries*: loss over all points of all grids after steps with n geometries in total. Three
   values are the median (minimum to maximum) of several random seeds. A dash means not measured.
 """
 TAIL = """

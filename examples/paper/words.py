@@ -71,8 +71,8 @@ RACE = """
 All networks are trained on the same shapes, with the same learning rates and the same random points in each
 step. Values are mean ± standard deviation over the random seeds.
 
-- *loss*: mean square error at the end of training. `meshonet-hard` predicts a correction of an initial grid,
-  so its loss cannot be compared with other losses.
+- *loss*: mean square error inside plus mean square error on the boundary, at the end of training.
+  `meshonet-hard` predicts a correction of an initial grid; its loss is not comparable.
 - `fno2d` learns from every second node in each direction. Splines interpolate its output to 101 x 101 nodes.
 """
 
@@ -111,9 +111,8 @@ SETTINGS = """
 
 The tables of quality are for networks trained for 15,000 epochs of 30 shapes, `meshonet-hard` on the airfoil
 for 3,000 epochs. The optimiser is Adam with a learning rate of 0.001, which is multiplied by 0.9 after each
-fifteenth of the epochs. A step uses 30 shapes, 1,000 random points inside and 200 on the boundary. The loss
-of `meshonet` is 900 times the mean square error inside plus 1,000 times the mean square error on the
-boundary.
+fifteenth of the epochs. A step uses 30 shapes, 1,000 random points inside and 200 on the boundary. The
+training of `meshonet` minimises 900 times the mean square error inside plus 1,000 times that on the boundary.
 
 On wrench and airfoil `meshonet-hard` has [other settings](../../theory/paper-models.md#meshonet-hard).
 """
