@@ -55,12 +55,12 @@ Each = TypeVar("Each")
 
 
 def ordered(columns: Sequence[Sequence[int]], values: Sequence[Each]) -> list[Each]:
-    """Return `values`, one for each wing, in the order of the wing numbers in the groups `columns`."""
+    """Return `values[k]` for each index k in the lists `columns`, one list after another."""
     return [values[k] for column in columns for k in column]
 
 
 def grouped(columns: Sequence[Sequence[int]], values: Sequence[Each]) -> list[list[Each]]:
-    """Split `values` into consecutive lists, each as long as one of `columns` (groups of wings)."""
+    """Split `values` into consecutive lists; the k-th list is as long as `columns[k]`."""
     rest = iter(values)
     return [list(islice(rest, len(column))) for column in columns]
 

@@ -23,7 +23,7 @@ def lines_between(
     """Return nodes (n, cells + 1, 3) on n lines from the points `begin` (n, 3) to the points `end` (n, 3).
 
     Coordinates are s, theta, zeta: along, around and away from a body. `points` maps them to x, y, z. `sizes`
-    are steps of s (n,) over the first and last cells; between these, cell lengths in space change smoothly.
+    are the steps of s (n,) in first and in last cells. Between these, lengths in x, y, z change smoothly.
     """
     lines, arcs, ends = _measured(points, begin, end, sizes)
     nodes = sampled(lines, arcs, smooth_arcs(arcs[:, -1], ends, cells))
@@ -34,7 +34,7 @@ def lines_between(
 def ways_between(
     points: Points, begin: Floats, end: Floats, sizes: tuple[Floats, Floats]
 ) -> tuple[Floats, tuple[Floats, Floats]]:
-    """Return the lengths in space (n,) of lines and of their end cells; parameters as in `lines_between`."""
+    """Return lengths (n,) in x, y, z of the lines of `lines_between`, and of their first and last cells."""
     _, arcs, ends = _measured(points, begin, end, sizes)
     return arcs[:, -1], ends
 

@@ -74,11 +74,11 @@ class LoftedMap(BodyMap):
         return super().places(lowered)
 
     def around(self, places: Floats) -> Floats:
-        """Return the length in space (...) of one radian around the body at `places` (..., 3)."""
+        """Return |d(x, y, z) / d theta| (...) at `places` (..., 3), which are s, theta, zeta of `BodyMap`."""
         return np.asarray(norms(self._around(places)))
 
     def steepness(self, places: Floats) -> Floats:
-        """Return the angle (...), in radians, from the z axis to the body's outline at `places` (..., 3)."""
+        """Return angles (...) in radians from z (spanwise) to lines along theta at `places` (..., 3)."""
         around = np.abs(self._around(places))
         return np.asarray(arctan2(around[..., 1], around[..., 2]))
 
@@ -123,7 +123,7 @@ def map_around(body: Body, far: float) -> BodyMap:
 
 
 def points_above(space: BodyMap, foot: Floats, first: float) -> Floats:
-    """Return the points (n, 3) at the distance `first` from the body, on its normals at the points `foot`.
+    """Return points x, y, z (n, 3) at the distance `first` from the body, on its normals at points `foot`.
 
     `foot` (n, 3) are coordinates s, theta, zeta (see `BodyMap`) of points on the body.
     """

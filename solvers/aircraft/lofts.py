@@ -29,7 +29,7 @@ class Loft:
 
 
 def section_loft(stack: Stack, unit: Floats) -> Loft:
-    """Return lines along the span through the nodes of sections, `unit` (sections, n, 2) for chord 1."""
+    """Return lines along a wing's span; `unit` (sections, n, 2) are nodes of sections, scaled to chord 1."""
 
     def line(number: int, z: Floats) -> Floats:
         return stack.lofted(unit[:, number : number + 1], z)[:, 0]

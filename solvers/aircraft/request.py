@@ -21,7 +21,7 @@ class AircraftRequest(StackRequest):
     def of(cls, **parameters: Any) -> Self:
         """Return a request with the parameters as its fields.
 
-        Raises InputError: an option that does not apply; both `cells` and `around`; also as `StackRequest`.
+        Raises InputError for an invalid option, one that does not apply, or both `cells` and `around`.
         """
         refuse_given(cls.what, {name: name in parameters for name in _OTHERS})
         if "cells" in parameters and "around" in parameters:

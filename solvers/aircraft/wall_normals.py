@@ -19,15 +19,15 @@ _TURN = 0.5  # length that takes the place of this distance beyond a tip, in cho
 _OBLIQUE = 0.4  # largest cosine between the level and the mean direction of lines at the edge of a tip
 
 
-def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: float) -> Floats:
+def off_body(points: Floats, above: Floats, rings: Sequence[Indices], first: float) -> Floats:
     """Return `points` (k, p, 3) of p lines on k levels, moved so that lines leave the body along normals.
 
     Parameters
     ----------
-    normal : (p, 3) for each line, the point off the body along its normal, at the distance `first`.
+    above : (p, 3) points at the distance `first` from the starts of the lines, along normals of the body.
     rings : for each wing, indices (n, m) of lines that start around it: n around it, m away from it.
     """
-    turned = (normal - points[1]) / first
+    turned = (above - points[1]) / first
     turned[points[0, :, 2] == 0.0, 2] = 0.0
     away = [arc_lengths(points[0, ring]) for ring in rings]
     most = min(float(apart[:, -1].min()) for apart in away)
@@ -42,7 +42,7 @@ def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: fl
 
 
 def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Floats:
-    """Return `points` (k nodes, p lines, 3), moved so that cells leave a wing at right angles to its span.
+    """Return `points` (k, p, 3) on p spanwise lines, moved so that cells leave a wing normal to its span.
 
     `ring` (n, m) are indices of lines, n around the wing and m away from it. First cells are `first` high.
     """
@@ -74,7 +74,7 @@ def across_tip(
     """Return the nodes `low` inboard and `high` outboard of a wing tip, moved for less oblique cells there.
 
     Both are (k, p, 3): k nodes on each of p lines along the span. `ring` (n, m) are indices of lines, n
-    around the wing and m away from it. Displacements fade to 0 at the ends. First cells stay `first` high.
+    around the wing and m away from it. Nodes far from the tip move less. First cells stay `first` high.
     """
     level = high[0, ring]
     along, lines = wing.axis, low[-1, ring[:, 0]] - low[-2, ring[:, 0]]

@@ -114,8 +114,7 @@ def _counts(chords: Chords, least: Indices, wanted: float, size: float | None, h
 def cut_off(fine: Layout, area: float = 0.0) -> float:
     """Return the fraction of `area` that is lost along curved walls because cells have straight edges.
 
-    The result is negative if the cells cover more than `area`. The default of `area` is the area of the
-    domain with straight lines between the points of its boundary.
+    The result is negative if the cells cover more. An `area` of 0 stands for the area of the domain.
     """
     (x, y), area = fine.mesh.nodes[fine.mesh.quads].transpose(2, 0, 1), area or fine.mesh.domain.area
     return 1.0 - 0.5 * float((x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum()) / area

@@ -119,7 +119,7 @@ class Cascade:
 
     @property
     def kept(self) -> float:
-        """Greatest thickness of the layers, divided by `thickness`; below 1 if thicker layers would fold."""
+        """Largest thickness of the layers over the intended one; below 1 if thicker layers would fold."""
         return min(float(self.ring.thickness.max()) / self.thickness, 1.0)
 
     @cached_property
@@ -137,7 +137,7 @@ class Cascade:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Functions that should rise by similar steps from node to node on outer edges, by loop index."""
+        """By loop index: arc lengths whose steps between nodes on outer edges of layers should be even."""
         return {BLADE: self.ring.along} if self.layers.limit else {}
 
     def factors_at(self, arcs: Floats) -> Floats:

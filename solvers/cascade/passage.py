@@ -87,7 +87,7 @@ class Passage:
         return np.asarray(((complex_of(points) - self.centre) / self.period).real)
 
     def at(self, axial: Sequence[float], along: Sequence[float]) -> Floats:
-        """Return the points (n, 2) at which the methods `axial` and `along` give these values (n,)."""
+        """Return points (n, 2) at axial distances `axial` (n,), and `along` (n,) pitches, from the centre."""
         centre = pairs_of(np.array(self.centre))
         return centre + np.array(axial)[:, None] * self.axis + np.array(along)[:, None] * self.pitch
 
@@ -96,7 +96,7 @@ class Passage:
         return np.asarray(times(1j * np.pi, (complex_of(points) - self.centre)) / self.period)
 
     def of_zeta(self, zeta: Complexes) -> Floats:
-        """Return the points (n, 2) with complex coordinates `zeta` (n,): the inverse of method `zeta`."""
+        """Return points (n, 2) from complex numbers (n,); the real axis is axial, iπ becomes the pitch."""
         return pairs_of(self.centre + times(zeta, self.period) / (1j * np.pi))
 
     def domain(self, inlet: float, outlet: float) -> Domain:

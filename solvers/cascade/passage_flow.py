@@ -38,8 +38,8 @@ class PassageFlow:
     ----------
     half : half the length of the slit, h.
     around : (n,) increasing angles ν of points on the blade; the potential is G = h cos ν.
-    strip : (n,) images σ of the points if the flow region is mapped to a strip; infinite at the slit's ends.
-    away : (n,) ζ - G at the points, where ζ is the coordinate of `Passage.zeta`.
+    strip : (n,) the points mapped to the strip |Im σ| <= π/2; its infinite ends are the ends of the slit.
+    away : (n,) ζ - G at the points: their complex coordinates (see `Passage.zeta`) minus the potential.
     """
 
     half: float
@@ -72,22 +72,22 @@ class PassageFlow:
         edge = np.where(angle > 0.0, -0.5j, 0.5j) * np.pi
         return cls(half, np.unwrap(angle), along + edge, points - phi)
 
-    def to_places(self, places: Complexes) -> Complexes:
-        """Return the coordinates ζ (n,) (see `Passage.zeta`) at which the potential G is `places` (n,)."""
-        ratio = sinh(places + self.half) / sinh(places - self.half)
-        return places + self.inside(np.asarray(0.5 * log(ratio)))
+    def to_places(self, potential: Complexes) -> Complexes:
+        """Return coordinates ζ (n,) (see `Passage.zeta`) of points with a complex `potential` (n,)."""
+        ratio = sinh(potential + self.half) / sinh(potential - self.half)
+        return potential + self.inside(np.asarray(0.5 * log(ratio)))
 
     @cached_property
     def far(self) -> tuple[float, float]:
-        """Re(ζ - G), of coordinate minus potential (see `PassageFlow`), far upstream and far downstream."""
+        """Real part of ζ - G, complex coordinate minus potential, far upstream and far downstream."""
         before, behind = self.inside(self.half * np.array([-1.0, 1.0], dtype=np.complex128))
         return float(before.real), float(behind.real)
 
     def inside(self, places: Complexes) -> Complexes:
-        """Return ζ - G (m,) (see `PassageFlow`) at the points σ = `places` (m,) of the strip.
+        """Return ζ - G (m,), coordinate minus potential, at `places` σ (m,) in the strip |Im σ| < π/2.
 
-        Cauchy's integral over the blade is a trapezoidal sum in the variable tanh(σ/2) there, divided by the
-        same sum for the constant 1 (Helsing, Ojala, J. Comput. Phys. 227 (2008) 2899-2921).
+        Cauchy's integral of ζ - G along the blade is a trapezoidal sum in the variable tanh(σ/2), divided by
+        the same sum for the constant 1 (Helsing, Ojala, J. Comput. Phys. 227 (2008) 2899-2921).
         """
         finite = np.isfinite(self.strip)
         around = tanh(0.5 * self.strip[finite])

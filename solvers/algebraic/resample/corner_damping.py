@@ -21,9 +21,9 @@ NEAR, FAR = 4.0, 10.0
 
 
 def openings(z: Any, xp: Any) -> Any:
-    """Return the weight of linear interpolation in place of splines, 0 to 1, at grid corners (.., 2, 2).
+    """Return weights (.., 2, 2) at corners of grids: 0 for splines, 1 for linear interpolation.
 
-    `z` (.., m, n) are the nodes as complex numbers, an array of numpy or torch; `xp` is that module.
+    `z` (.., m, n) are the nodes as complex numbers, an array of the module `xp`, which is numpy or torch.
     """
     west_east = xp.stack([z[..., 0, :], z[..., -1, :]], -2)
     beside = xp.stack([z[..., 1, :], z[..., -2, :]], -2)
@@ -44,7 +44,7 @@ def fading(m: int, n: int) -> Floats:
 
 @lru_cache(maxsize=16)
 def cubic(n: int, count: int) -> Floats:
-    """Return the matrix (count, n) from second derivatives at n knots to spline minus linear values."""
+    """Return the matrix (count, n) of what second derivatives at n knots add to linear interpolation."""
     return _weighted(n, count, 2)
 
 

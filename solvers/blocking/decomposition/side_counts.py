@@ -67,10 +67,9 @@ def suited(
 ) -> Indices:  # fmt: skip
     """Return cell counts of chords (rows of blocks) that satisfy all conditions and are nearest to `counts`.
 
-    Counts are at least `least`, are multiples of `multiple`, and are equal on both sides of each periodic
-    pair. `fixed` prescribes the counts of some chords, by index. A later refinement multiplies all counts by
-    `finer`. If `named`, sides for which the domain gives cell counts by name get `multiple` / `finer` times
-    these, rounded up or down.
+    Counts are at least `least`, multiples of `multiple`, and equal on both sides of periodic pairs. `fixed`
+    prescribes the counts of some chords, by index. A later refinement multiplies all counts by `finer`. If
+    `named`, a side for which the domain prescribes a number of cells then has about `multiple` times as many.
 
     Raises InputError if given counts contradict each other or are too small; SolverError if no counts are
     equal along periodic sides.
@@ -126,7 +125,7 @@ def _conflict(names: tuple[str, ...], given: Mapping[str, int], sums: Sums, leas
 
 
 def nearer(chords: Chords, counts: Indices, multiple: int = 1) -> Indices:
-    """Return `counts` scaled so that sides with a prescribed count get about `multiple` times this count."""
+    """Return cell counts of rows of blocks, scaled to about `multiple` times those prescribed on sides."""
     counts = counts.copy()
     for name, row in sums_of(chords).items():
         total = sum(times * counts[chord] for chord, times in row.items())

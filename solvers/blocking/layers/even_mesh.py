@@ -43,8 +43,8 @@ def evened_mesh(mesh: QuadMesh, held: Bools, lines: GrowthLines, following: Indi
     """Return the mesh with nodes moved where the ratio of successive edges exceeds the limits of `lines`.
 
     Nodes in the mask `held` (n,) are fixed. Each pair in `following` (k, 2) is a wall node and a node that
-    moves and rotates with it, so that first cells keep their heights. Nodes on loops slide along the loops,
-    except corners and nodes of periodic sides. Ratios may exceed the limits where good angles require it.
+    moves and rotates with it, so that first cells keep their heights. Nodes slide along the boundary, except
+    at corners and on periodic sides. Ratios may exceed the limits where good angles require it.
     """
     sliding = mesh.wall_nodes & ~held & (mesh.places.cells == 0) & ~mesh.tied
     fixed = held | (mesh.wall_nodes & ~sliding)

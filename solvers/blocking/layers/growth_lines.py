@@ -49,9 +49,9 @@ class GrowthLines:
     ) -> Self:
         """Return all pairs of consecutive edges on grid lines, each with a limit on its length ratio.
 
-        Limits are logarithms: `limit` for lines that start at walls, which are the nodes in the mask `walls`
-        (n,), and for edges on both sides of a block side; `elsewhere` for all others. A larger ratio along a
-        wall is also the limit for lines parallel to it, unless the wall's nodes are `sliding`.
+        Limits are logarithms: `limit` on lines that start at the nodes in the mask `walls` (n,), and where
+        lines cross from block to block; `elsewhere` on other lines. Lines along a wall, in the blocks beside
+        it, may have as large ratios as the wall itself, unless its nodes are in the mask `sliding` (n,).
         """
         mesh, pairs = layout.mesh, cls.of(layout.mesh, elsewhere)
         nodes = pairs.nodes
@@ -92,7 +92,7 @@ class GrowthLines:
         return z[self.nodes[:, 1]] - z[self.nodes[:, 0]], z[self.nodes[:, 2]] - z[self.begins]
 
     def largest_at(self, mesh: QuadMesh, rows: list[Indices]) -> Floats:
-        """Return the largest |growth| (n,) at each node, or at the start of its line in `rows` if larger."""
+        """Return the largest |growth| (n,) at nodes; on lines in `rows`, at least that of the first node."""
         growth = np.zeros(len(mesh.nodes))
         np.maximum.at(growth, self.nodes[:, 1], np.abs(self.growth(complex_of(mesh.nodes))))
         for table in rows:

@@ -46,11 +46,11 @@ def feature_sizes(domain: Domain) -> SizeMetric:
 def found_outside(
     rest: Domain, fronts: Collection[int], timings: Timings | None = None, symmetric: bool = True
 ) -> Layout:
-    """Return the blocks of the domain `rest` outside layers; the loops `fronts` are outer edges of layers.
+    """Return the blocks of `rest`, a domain without its layers; loops `fronts` are outer edges of layers.
 
     If `symmetric`, a symmetric domain gets symmetric blocks.
 
-    Raises SolverError if no blocks are found; InputError if walls or fronts nearly touch.
+    Raises SolverError if no blocks are found; InputError if two loops nearly touch.
     """
     plain = rest if symmetric and mirrors_of(rest) else replace(rest, loops=tuple(map(_smooth, rest.loops)))
     sizes = feature_sizes(plain)
@@ -66,8 +66,8 @@ def found_outside(
 def taken_outside(layout: Layout, rest: Domain, fronts: Collection[int]) -> Layout:
     """Return `layout` transferred to the domain `rest`, whose loops `fronts` are the outer edges of layers.
 
-    Raises InputError as `carried_over` does; also if the layout has layers around a loop not in `fronts`, or
-    none around a loop in `fronts` that has sharp corners.
+    Raises InputError if `layout` was made for layers around a loop that is not in `fronts`, or without layers
+    around a loop in `fronts` that has sharp corners. See `carried_over` for other reasons.
     """
     taken = carried_over(layout, rest)
     places = taken.mesh.places

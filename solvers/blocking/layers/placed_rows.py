@@ -39,7 +39,7 @@ def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings)
 
 
 def with_layers(layout: Layout, rows: WallRows, settings: Sequence[LayerSettings]) -> Layout:
-    """Return a fine layout with layers in `rows`, rows of blocks at walls; `settings` has one entry per row.
+    """Return the layout with layers in `rows`, the rows of blocks at walls, each with its own `settings`.
 
     Nodes move along the lines that cross a row. First cells have exactly the given height; cells grow to the
     size of the cells beyond the layers.
@@ -71,8 +71,8 @@ def with_layers(layout: Layout, rows: WallRows, settings: Sequence[LayerSettings
 def held_nodes(layout: Layout, rows: WallRows, settings: LayerSettings, sheets: int) -> tuple[Bools, Indices]:
     """Return a mask (n,) of the fixed nodes in rows of layers, and pairs (k, 2) of nodes that move together.
 
-    Each pair is a wall node and a node of the first cells on the same line. The number of rows around sharp
-    edges, which come first, is `sheets`. In these rows and at corners, both nodes are fixed and form no pair.
+    Each pair is a wall node and a node of the first cells on the same line. In the first `sheets` rows, which
+    go around sharp edges, and at corners, both nodes are fixed and form no pair.
     """
     mesh, cells = layout.mesh, settings.constant + 1
     held, pairs = np.zeros(len(mesh.nodes), dtype=bool), []

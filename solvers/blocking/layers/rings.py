@@ -78,7 +78,7 @@ class Ring:
 
     @cached_property
     def along(self) -> Measures:
-        """Arc lengths along outer edge, wall and the nodes next to the wall, as functions of the first."""
+        """Arc lengths along the wall and the nodes next to it, as functions of that along the outer edge."""
         n = len(self.arcs)
         index = np.arange(FINER * n + 1) / FINER
         knots = np.append(self.front.curve.knots, self.front.length)

@@ -38,7 +38,7 @@ class RowSizes:
     ----------
     loop : the wall.
     arcs : (n,) ascending arc lengths of the points.
-    length : (n,) cell length along the wall at each point, for a scale of 1.
+    length : (n,) cell length along the wall at each point; methods multiply it by their factor `scale`.
     gap : (n,) distance from each point to the nearest wall in front of it.
     on : (n,) mask of points with layers.
     first : (n,) first-cell heights.
@@ -53,7 +53,7 @@ class RowSizes:
 
     @classmethod
     def of(cls, domain: Domain, number: int, stretches: Sequence[Stretch], settings: LayerSettings) -> Self:
-        """Return cell sizes along loop `number` with layers on its parts `stretches`; all around if empty."""
+        """Return cell sizes along loop `number`; layers are on its parts `stretches`, or everywhere if empty."""
         loop = domain.loops[number]
         arcs, length = sizes_by_bend(loop, loop.length / COLUMNS, TURN)
         gap = _gaps(domain, number, arcs)
@@ -68,9 +68,9 @@ class RowSizes:
         return cls(loop, arcs, length, gap, on, first)
 
     def thickness(self, scale: float, settings: LayerSettings) -> Floats:
-        """Return the thickness (n,) of layers: cells grow until they are square, unless a gap is too narrow.
+        """Return the total thickness (n,) of all layers at each point of the wall.
 
-        `scale` is a factor on the cell lengths along the wall.
+        Cells grow until they are square, or less in narrow gaps. `scale` multiplies lengths along the wall.
         """
         last = scale * self.length * settings.growth
         full = np.maximum((last - self.first) / (settings.growth - 1.0), THINNEST * self.first)
@@ -79,11 +79,11 @@ class RowSizes:
         return graded(full, self.arcs, self.loop.length, SLOPE)
 
     def thickness_at(self, arcs: Floats, scale: float, settings: LayerSettings) -> Floats:
-        """Return the thickness (k,) at arc lengths `arcs` (k,); `scale` multiplies lengths along the wall."""
+        """Return the thickness (k,) of layers at arc lengths `arcs` (k,); `scale` multiplies cell lengths."""
         return np.interp(arcs, self.arcs, self.thickness(scale, settings), period=self.loop.length)
 
     def thickness_behind(self, away: Floats, scale: float, settings: LayerSettings) -> Floats:
-        """Return the thickness (k,) of layers on a wake at the distances `away` (k,) from the sharp edge."""
+        """Return the thickness (k,) of layers `away` (k,) down the wake; `scale` multiplies cell lengths."""
         edge = self.thickness_at(self.loop.corner_arcs[:1], scale, settings)
         return edge + SPREAD * away
 

@@ -68,9 +68,9 @@ class WallLayers:
     ) -> Self:  # fmt: skip
         """Return the layers of a domain.
 
-        Layers around `loops` (indices) are marched. Other layers are rows of blocks: on `stretches` (parts of
-        loops), and around `sheets`, the indices of loops with one sharp edge and a wake with layers. Raises
-        InputError if there is too little room, or if layers fold.
+        Layers around `loops` (indices) are marched. Others are rows of blocks along `stretches` (parts of
+        loops), and around the loops with the indices `sheets`, which have a sharp edge, and their wakes.
+        Raises InputError if there is too little room, or if layers fold.
         """
         rings = rings_around(domain, loops, settings)
         numbers = sorted({*sheets, *(stretch.loop for stretch in stretches)})
@@ -98,7 +98,7 @@ class WallLayers:
 
     @cached_property
     def of_rows(self) -> tuple[LayerSettings, ...]:
-        """Settings of the layers that are rows of blocks: first for each of `sheets`, then of `stretches`."""
+        """Settings of each row of blocks with layers: first those around sharp edges, then the others."""
         loops = self.domain.loops
         names = [loops[k].names for k in self.sheets] + [s.names(loops[s.loop]) for s in self.stretches]
         return tuple(map(self.settings.at, names))
@@ -141,10 +141,10 @@ class WallLayers:
     def metric(
         self, scale: float, size: float = 0.0, wakes: Mapping[int, Floats] | None = None
     ) -> SizeMetric:
-        """Return the target cell sizes outside the layers, at most `size` if given.
+        """Return the target cell sizes outside the layers.
 
-        Without `size`, sizes next to layers are `scale` times the cell lengths along the wall. `wakes` maps
-        the index of a loop to the nodes (k, 2) of the wake that begins at it.
+        Next to layers, they are `scale` times the cell lengths along the wall. If `size` is given, it is the
+        largest size, and `scale` has no effect. `wakes` has nodes (k, 2) of wakes, by the index of the loop.
         """
         scale = 1.0 if size else scale
         parts = [sizes.metric(scale, self.settings) for sizes in self.sizes.values()]
@@ -163,7 +163,7 @@ class WallLayers:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Functions that should rise by similar steps from node to node on outer edges, by loop index."""
+        """By loop index: arc lengths whose steps between nodes on outer edges of layers should be even."""
         measures = {k: ring.along for k, ring in self.rings.items()}
         if self.near is not None:
             ends = np.array([0.0, self.near.circle.length])
@@ -175,7 +175,10 @@ class WallLayers:
         return self.of_ring(number).rows(float(self.rings[number].thickness.max()))
 
     def attached_cells(self, chords: Chords, counts: Indices) -> int:
-        """Return the number of cells in `rings` and in the far field, if `chords` have `counts` cells."""
+        """Return the number of cells in layers around loops and in the far field.
+
+        `counts` (chords,) are the cells along the edges of each chord (set of opposite edges).
+        """
         along = chords.along_loops(counts).tolist()
         total = sum(along[number] * self.ring_rows(number) for number in self.rings)
         if self.near is not None:
@@ -246,9 +249,9 @@ class Counts:
 def wanted_counts(
     walls: WallLayers, rows: WallRows, chords: Chords, cells: int, size: float, before: Counts | None
 ) -> Counts:
-    """Return cell counts for about `cells` cells in total or, if `cells` is 0, for cells of length `size`.
+    """Return cell counts of all rows of blocks for about `cells` cells in total.
 
-    `before` are the counts of the previous iteration, None in the first one.
+    If `cells` is 0, `size` is the largest cell size. `before` is the result of the last iteration, if any.
     """
     multiple, row = walls.settings.multiple, rows.of_chords(chords)
     wakes = rows.wakes(chords.layout)

@@ -37,8 +37,8 @@ class WallRows:
     Parameters
     ----------
     loops : for each row, the index of the loop along which it goes.
-    across : (b, 2) rows that are crossed by each block's lines from south to north, and by those from west to
-        east; -1 for no row. Refinement does not change these indices.
+    across : (b, 2) for each block, the index of the row that its lines from south to north cross, and of the
+        row that its lines from west to east cross; -1 for none. Refinement does not change these indices.
     back : (b, 2) whether these lines lead towards the wall.
     """
 
@@ -47,14 +47,14 @@ class WallRows:
     back: Bools
 
     def of_chords(self, chords: Chords) -> Indices:
-        """Return, for each chord (set of opposite edges), the index of the row that it crosses, or -1."""
+        """Return, by chord (set of opposite edges), the index of the row that these edges cross; -1: none."""
         row = np.full(chords.count, -1, dtype=np.intp)
         row[chords.chord[chords.sides[:, 2]]] = self.across[:, 0]
         row[chords.chord[chords.sides[:, 0]]] = self.across[:, 1]
         return row
 
     def columns(self, layout: Layout, row: int) -> list[Indices]:
-        """Return for each block of a row the nodes (k, n) of lines from wall or wake to the outer edge."""
+        """Return, for each block of a row, the nodes (k, n) of k lines across it, from the wall or wake."""
         tables = []
         for block, direction in zip(*np.nonzero(self.across == row), strict=True):
             table = layout.blocks[block].T if direction else layout.blocks[block]

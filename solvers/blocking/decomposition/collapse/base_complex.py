@@ -22,10 +22,10 @@ from meshonet.kernels._native import split_quads
 
 @dataclass(frozen=True, eq=False)
 class BaseComplex:
-    """Blocks of a quad mesh, the edges that bound them, and the chords (rows of blocks).
+    """Blocks of a quad mesh, the edges that bound them, and the chords: sets of opposite sides of blocks.
 
-    A chord is the set of all block sides that are reached from one side by repeatedly crossing a block to the
-    opposite side. All sides of a chord have the same number of cells.
+    A chord has all block sides that are reached from one side by repeatedly crossing a block to the opposite
+    side. All sides of a chord have the same number of cells.
     """
 
     mesh: QuadMesh
@@ -41,10 +41,10 @@ class BaseComplex:
 
     @cached_property
     def sides(self) -> tuple[Indices, Indices, Indices]:
-        """Edges along the south, north, west and east side of each block.
+        """Edges along the south, north, west and east side of each of b blocks.
 
-        The first array (k,) lists the edges of one side after another, with -1 after each side. The second
-        (4 b,) has the index of each side's first edge in that list. The third (4 b,) has each side's chord.
+        The first array (k,) lists the edges of each side, with -1 after the last. The second (4 b,) has the
+        place of each side's first edge in the list, the third (4 b,) the index of its set of opposite sides.
         """
         lines = [line for block in self.blocks for line in (block[:, 0], block[:, -1], block[0], block[-1])]
         nodes = np.concatenate(lines)

@@ -165,7 +165,7 @@ def _placed(trial: QuadMesh, mesh: QuadMesh, label: Indices) -> QuadMesh:
 
 
 def is_conforming(mesh: QuadMesh, many: int = 0) -> bool:
-    """Return whether `conforms` holds and interior nodes have 3 to 5 quads, or up to `many` if larger."""
+    """Return whether a mesh fits its domain (`conforms`), with 3 to max(5, `many`) quads at inner nodes."""
     inside = mesh.valence[~mesh.wall_nodes]
     few, many = VALENCES[0], max(VALENCES[1], many)
     return conforms(mesh) and bool(((inside >= few) & (inside <= many)).all())

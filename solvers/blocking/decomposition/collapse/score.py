@@ -27,9 +27,9 @@ SIZES = 8.0  # price in degrees of mean deviation if all cells are too long or s
 def score(blocks: BaseComplex, price: float = PRICE, wanted: Floats | None = None) -> float:
     """Return the score of blocks, a weighted sum of penalties in degrees; lower is better.
 
-    Penalties are for angles other than 90 degrees, for a wall that turns along one edge, for a wrong number
-    of quads at a wall node, for uneven sizes, and `price` for each block. `wanted` (e,) are target lengths of
-    the edges; by default all edges have the same target.
+    Penalties are for angles other than 90 degrees, for the turning of walls along an edge of the mesh, for a
+    wrong number of quads at wall nodes, and for uneven sizes. Each block adds `price`. `wanted` (e,) are
+    target lengths of the edges; by default all edges have the same target.
     """
     mesh = blocks.mesh
     off = deviations(mesh)

@@ -27,7 +27,7 @@ _DIFFUSION = 0.003
 
 @dataclass(frozen=True, eq=False)
 class CrossField:
-    """Four directions at right angles (a cross) and the number of cells at each vertex of a surface."""
+    """Four directions at right angles (a cross) at vertices of a surface, and how many cells meet there."""
 
     surface: Triangulation
     walls: WallDirections

@@ -12,9 +12,8 @@ from meshonet.solvers.blocking.decomposition.field.wall_directions import QUARTE
 from meshonet.solvers.blocking.decomposition.surface.laplacian import Laplacian
 from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, PREVIOUS
 
-_LARGEST = (
-    4.0  # logarithm of a frame's size, which is unbounded at singular points; 1 and 8 give the same blocks
-)
+_LARGEST = 4.0
+"""Logarithm of a frame's size, which is unbounded at singular points; 1 and 8 give the same blocks."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +72,7 @@ def frame_sizes(field: CrossField) -> Floats:
     """Return lengths e^H (t,), one per triangle, with which the cross field is nearly free of curl.
 
     Vectors e^H (cos theta, sin theta) along the field are free of curl if grad H is grad theta rotated by a
-    quarter turn. H is the least-squares solution, for which the median length is 1.
+    quarter turn. H is the least-squares solution. Lengths are scaled to a median of about 1.
     """
     surface = field.surface
     corner = angle(field.crosses)[surface.triangles] / 4.0

@@ -19,7 +19,7 @@ _IMAGINARY = np.array([0.0, 1.0, 0.0, -1.0])  # imaginary parts of them
 class Parametrisation:
     """Linear system for the coordinates w = u + i v of the vertices of a surface that is cut open.
 
-    The solution minimises the sum over all triangles of weight times area times
+    The solution minimises the sum over all triangles of area times weight (an argument of `solve`) times
 
         |grad u - s (cos theta, sin theta)|^2 + |grad v - s (-sin theta, cos theta)|^2
 

@@ -29,10 +29,10 @@ def half_edges(mesh: QuadMesh) -> HalfEdges:
 def with_row(mesh: QuadMesh, path: Sequence[int], *, closed: bool = False, of_wall: bool = False) -> QuadMesh:
     """Return the mesh with a row of quads inserted on the left of a path of nodes.
 
-    The path goes from wall to wall or, if `closed`, from its last node back to the first. The far side of the
-    row is called the front. The new nodes are on the front and the old ones on the path, or vice versa if
-    `of_wall`. The new quads are the last ones of the mesh; each has two nodes on the path, then two on the
-    front. If a closed path begins at a corner with a single quad, the last new quad joins its ends there.
+    The path goes from wall to wall or, if `closed`, from its last node back to the first. New nodes are on
+    the far side of the row. If `of_wall`, they take the places of the path's nodes, which move to the far
+    side. The new quads are the last ones of the mesh; each has two nodes on the path, then two on the far
+    side. If a closed path begins at a corner with a single quad, the last new quad fills this corner.
     """
     half, n, count = half_edges(mesh), len(mesh.nodes), len(path)
     new = list(range(n, n + count))

@@ -28,13 +28,13 @@ def wrong_count(mesh: QuadMesh) -> Bools:
 
 
 def loops_to_pad(mesh: QuadMesh) -> list[int]:
-    """Return the indices of boundary loops that have no corners, but nodes with other than two quads."""
+    """Return indices of boundary loops without corners where some node has more or fewer than two quads."""
     wrong = distinct(mesh.places.loop[wrong_count(mesh)])
     return [int(loop) for loop in wrong if loop >= 0 and not mesh.domain.loops[loop].corners]
 
 
 def spans_to_pad(mesh: QuadMesh, spans: Sequence[Span]) -> list[Span]:
-    """Return the `spans` (parts of loops) with a wrong number of quads (`wrong_count`) at an inner node."""
+    """Return the `spans` (parts of loops) with a node between their ends at which `wrong_count` is true."""
     places, wrong = mesh.places, wrong_count(mesh)
     return [
         (loop, begin, end)

@@ -33,7 +33,7 @@ class Ports:
 
 
 def ports_of(seamless: SeamlessMap, others: Indices) -> Ports:
-    """Return the directions in which lines leave a map's corners, its singular vertices, and `others`."""
+    """Return directions of block edges at the corners, singular vertices and vertices `others` of a map."""
     cells, around = seamless.boundary_cells, seamless.valence.copy()
     around[: len(cells)] = cells
     corners = np.flatnonzero((seamless.corner_cells > 0) | ((cells != 2) & (cells > 0)))

@@ -36,15 +36,15 @@ class Trails:
     vertex: Indices  # (p,) vertex at the start of the piece, at walls; -1 elsewhere
 
     def total(self, trail: int) -> float:
-        """Return the length of a trail (a traced line of the map), in coordinates of the map."""
+        """Return the length of line number `trail` in the coordinates u, v of the map."""
         return float(self.length[self.first[trail + 1] + trail])
 
     def at_vertex(self, vertex: int) -> tuple[int, float]:
-        """Return the index of the trail (line in the map) through a wall vertex, and its length up to it."""
+        """Return the index of the boundary line through a vertex, and its length in u, v to the vertex."""
         return self._on_piece(self.vertex == vertex, 0.0)
 
     def at_edge(self, face: int, edge: int, part: float) -> tuple[int, float]:
-        """Return which trail goes along a wall edge, and its length up to the fraction `part` of the edge."""
+        """Return the index of the boundary line at an edge, and its length in u, v to `part` of the edge."""
         return self._on_piece((self.face == face) & (self.edge == edge), part)
 
     def _on_piece(self, which: Bools, part: float) -> tuple[int, float]:
@@ -75,7 +75,7 @@ class Trails:
 
 
 def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, rays: int) -> Trails:
-    """Return the trails of `rays` rays from `pieces` (p, 3) and `lines` (p, 5), results of `trace_rays`."""
+    """Return `rays` traced lines as `Trails`; `pieces` (p, 3) and `lines` (p, 5) come from `trace_rays`."""
     order = np.argsort(pieces[:, 0], kind="stable")
     pieces, lines = pieces[order], lines[order]
     count = np.bincount(pieces[:, 0], minlength=rays)

@@ -36,7 +36,7 @@ def node_images(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> list
 
 
 def agree(images: Images) -> bool:
-    """Return whether mirrors are consistent: reflections in two of them must rotate the mesh onto itself."""
+    """Return whether `images` in mirrors are consistent: two reflections must be a rotation of the mesh."""
     if len(images) < 2:
         return True
     (_, one), (_, other) = images[:2]
@@ -51,8 +51,8 @@ def agree(images: Images) -> bool:
 def made_symmetric(mesh: QuadMesh, images: Images | None = None) -> QuadMesh:
     """Return the mesh with each node at the mean of itself and its mirror images.
 
-    `images` are the images of nodes, by default in all mirrors. If `agree` is false for them, only the first
-    mirror is used. Corners do not move.
+    `images` are the images of nodes, by default in all mirrors. If those in different mirrors contradict each
+    other (see `agree`), only the first mirror is used. Corners do not move.
     """
     images = images_of(mesh) if images is None else images
     if not agree(images):

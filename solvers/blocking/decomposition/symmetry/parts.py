@@ -63,7 +63,7 @@ class DomainPart:
 
 
 def spans_between(loop: Loop) -> list[Span]:
-    """Return the parts of a loop from a corner with one cell to the next; corners between have two cells."""
+    """Return parts of a loop between corners with one cell each; other corners in them have two cells."""
     corners = zip(loop.corner_arcs.tolist(), loop.corner_cells.tolist(), strict=True)
     turns = [(arc, cells) for arc, cells in corners if cells != 2]
     pairs = pairwise([*turns, *((arc + loop.length, cells) for arc, cells in turns[:1])])

@@ -43,10 +43,10 @@ def symmetric_blocks(
 ) -> BaseComplex:  # fmt: skip
     """Return symmetric blocks of the domain of `blocks`, or `blocks` if symmetric blocks are clearly worse.
 
-    The score of symmetric blocks may be worse by `worth`. The given blocks are kept if they are symmetric,
-    unless mirrored blocks of a part of the domain are better and not more numerous. Symmetry about more
-    mirrors is preferred. `find` returns the mesh of a part. `unsized` returns a mesh without prescribed edge
-    lengths, which is tried last.
+    The score of symmetric blocks may be worse by `worth`. If `blocks` are symmetric, they are kept, unless
+    the blocks of a part of the domain, with their mirror images, are better and not more numerous. Symmetry
+    about more mirrors is preferred. `find` returns the mesh of a part of the domain. `unsized` returns a mesh
+    without prescribed edge lengths, which is tried last.
     """
     mesh, every = blocks.mesh, mirrors_of(blocks.mesh.domain)
     pair = every[:1] if len(every) % 2 else every[:: max(len(every) // 2, 1)]
@@ -134,8 +134,8 @@ def _symmetric(mesh: QuadMesh, mirrors: Sequence[Mirror]) -> tuple[QuadMesh, Ima
 def cut_on_mirrors(mesh: QuadMesh, images: Images, more: Bools | None = None) -> BaseComplex:
     """Return the blocks of a mesh, cut so that the mirror image of a block side is again a block side.
 
-    `more` (e,) marks edges at which blocks end too. Raises SolverError if blocks form a closed ring that has
-    no grid line on a mirror.
+    `more` (e,) marks edges at which blocks end too. Raises SolverError if a block is a closed ring that
+    cannot be cut, because no grid line is on a mirror.
     """
     blocks = base_complex(mesh, more)
     ring = bool(images) and any(len(distinct(block[[0, 0, -1], [0, -1, 0]])) < 3 for block in blocks.blocks)
