@@ -53,7 +53,7 @@ class RowSizes:
 
     @classmethod
     def of(cls, domain: Domain, number: int, stretches: Sequence[Stretch], settings: LayerSettings) -> Self:
-        """Return cell sizes along loop `number`; layers are on its parts `stretches`, or everywhere if empty."""
+        """Return cell sizes along loop `number` with layers on its parts `stretches`; if empty, on all of it."""
         loop = domain.loops[number]
         arcs, length = sizes_by_bend(loop, loop.length / COLUMNS, TURN)
         gap = _gaps(domain, number, arcs)
