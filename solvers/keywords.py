@@ -10,7 +10,7 @@ Request = TypeVar("Request")
 
 
 def request_from(kind: type[Request], what: str, parameters: Mapping[str, Any]) -> Request:
-    """Return a request of the class `kind`; the parameter ``wall_spacing`` also sets ``first_cell``.
+    """Return a request of the class `kind`; ``wall_spacing`` is another name of the field ``first_cell``.
 
     Raises InputError as `kind`, and for unknown parameters. `what` names the kind of grid in messages.
     """

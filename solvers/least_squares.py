@@ -25,7 +25,7 @@ class NormalEquations:
     Parameters
     ----------
     size : number n of unknowns, or of pairs of unknowns.
-    kinds : indices (k, m) of the m unknowns of k residuals, for each kind of residuals; -1: a fixed value.
+    kinds : for each kind of residual, indices (k, m) of the m unknowns of k residuals; -1: a fixed value.
     block : 2 if an index means two unknowns, such as x and y; `Residuals.derivatives` are then (k, 2 m).
 
     >>> equations = NormalEquations(1, [np.array([[0], [0]])])
@@ -53,7 +53,7 @@ class NormalEquations:
             done += count
 
     def step(self, residuals: Sequence[Residuals], diagonal: Floats, slope: Floats) -> Floats:
-        """Return the changes (n,) of the unknowns, or (2 n,) of pairs of unknowns.
+        """Return the changes of the unknowns: (n,), or (2 n,) if each of n indices means two unknowns.
 
         `slope` and `diagonal` are first and second derivatives of additional terms, each a function of one
         unknown. Raises SolverError if the equations are singular.

@@ -57,11 +57,12 @@ class Panels(NamedTuple):
 
 
 def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> Panels:
-    """Return panels that cover the levels `first` to `last` - 1 of `eta`; none if they would not save work.
+    """Return intervals of `eta` (panels) in which grid levels are interpolated from `NODES` points each.
 
-    `eta` (nj,) ascends from 0 at the wall to 1 at the far field. The domain is mapped onto a strip: `height`
-    is its mean width, and its edge at the wall is uneven by `spread`. A panel is at most as long as its
-    distance from the wall, so that the error of its `NODES` points is (3 + sqrt(8))^-NODES = 6e-13.
+    Panels lie between the levels `first` and `last` - 1; there are none if they would not save work. `eta`
+    (nj,) ascends from 0 at the wall to 1 at the far field. The domain is mapped onto a strip of mean width
+    `height`, whose edge at the wall is uneven by `spread`. There, panels are at most as long as their
+    distance from the wall, so that the interpolation error is (3 + sqrt(8))^-NODES = 6e-13.
     """
     ends: list[int] = []
     points, matrices = [np.empty(0)], [np.empty((NODES, 0))]

@@ -53,10 +53,10 @@ class StripGrid:
         return np.asarray(F + 1j * theta)
 
     def fill(self, lift: Lift, out: Floats, axis: Axis | None = None, shift: Shift | None = None) -> bool:
-        """Map nodes to the plane, as ``out[:, 1:-1]`` of `out` (n + 1, nj, 2); return whether all are finite.
+        """Write the nodes between both walls to ``out[:, 1:-1]``; return whether all are finite.
 
-        `lift` maps the strip conformally to the plane. The last row repeats the first bitwise. With a mirror
-        `axis`, rows i and n - i are mirror images. `shift` moves points of the strip parallel to its walls.
+        `out` is (n + 1, nj, 2), and its last row repeats the first. `lift` maps the strip of this grid to the
+        plane. With a mirror `axis`, rows i and n - i are mirror images. `shift` moves nodes along the strip.
         """
         n, (ends, points, matrix) = len(self.theta), self._panels
         begin, far = ends[0], self.eta[ends[-1] : -1]

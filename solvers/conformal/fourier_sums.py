@@ -21,12 +21,12 @@ def columns(modes: Complexes) -> Floats:
     """Return values (Q, 2, width) at Q angles, from which windowed sums give m Fourier series at any angle.
 
     The values f_q have the axes angle, real and imaginary part, and series, padded to a multiple of `LANES`.
-    `modes` (m, 2 K + 1) have the order k = 0 .. K, -K .. -1. Q is a power of two above 4 K. The sum at theta
-    has `TAPS` terms::
+    `modes` (m, 2 K + 1) are the coefficients c_k of the series for k = 0 .. K, -K .. -1. Q is a power of two
+    above 4 K. The sum at theta has `TAPS` terms::
 
         sum_k c_k exp(i k theta) = sum_q w(theta - theta_q) f_q,      f_q = sum_k c_k / v_k exp(i k theta_q)
-        w(x) = exp(b (sqrt(1 - x^2) - 1)),  |x| < 1,  x in units of TAPS / 2 steps of theta_q,  b = 2.3 TAPS
-        v_k = sum_q w(theta_q) exp(-i k theta_q)
+        w(theta) = exp(b (sqrt(1 - x^2) - 1)),    x = Q theta / (pi TAPS),    |x| < 1,    b = 2.3 TAPS
+        v_k = sum_q w(theta_q) exp(-i k theta_q),    theta_q = 2 pi q / Q
 
     The error is about exp(-pi TAPS sqrt(1/2)) = 3e-14 of the largest mode. Barnett, Magland & af Klinteberg,
     SIAM J. Sci. Comput. 41 (2019) C479.

@@ -15,11 +15,13 @@ FAR = 37.0  # exp(-37) is the precision of a double: modes that have decayed so 
 def extend(boundary: Boundary) -> Floats:
     """Return the nodes (ni, nj, 2) of the solution of Laplace's equation; boundary nodes are exact.
 
-    Each side contributes a series, here that of eta = 0. b_k are Fourier coefficients of its nodes minus the
-    line between its corners, c_k those of its nodes. a is height / length, T log(outer / inner length)::
+    A quad grid is the bilinear interpolation of its corners plus a series for each side. An O grid is the
+    linear interpolation of the mean nodes of wall and far field plus two series. For the side eta = 0::
 
-        quad   bilinear in corners + sum over sides, k of b_k sin(k pi xi) sinh(k pi a (1-eta)) / sinh(k pi a)
-        o      linear in wall means + sum over walls, k of c_k exp(2 pi i k xi) sinh(k T (1-eta)) / sinh(k T)
+        quad   sum_k b_k sin(k pi xi) sinh(k pi a (1-eta)) / sinh(k pi a),     a = height / length
+        o      sum_k c_k exp(2 pi i k xi) sinh(k T (1-eta)) / sinh(k T),       T = log(outer / inner length)
+
+    c_k (k not 0) are Fourier coefficients of the side's nodes, b_k those of its nodes minus a straight line.
 
     >>> s, zero, one = np.linspace(0.0, 1.0, 5), np.zeros(5), np.ones(5)
     >>> square = Boundary(*(np.stack(edge, axis=1) for edge in [(s, zero), (s, one), (zero, s), (one, s)]))

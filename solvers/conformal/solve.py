@@ -25,9 +25,7 @@ from meshonet.solvers.solution import Solution
 Polish = Literal["auto", "off"] | int  # steps: a number, ``off`` for none, ``auto`` until they change little
 
 Correction: TypeAlias = Callable[[Complexes, Complexes, NDArray[np.intp]], Complexes]
-"""Function from modes of wall and far field (batch, modes) and handedness (batch,) to modes (batch, modes,
-LEVELS).
-"""
+"""From modes of wall and far field (batch, modes) and handedness (batch,) to modes (batch, modes, LEVELS)."""
 
 AUTO_STEPS = 8  # the most steps that "auto" takes
 SETTLED = 2e-4  # change (radians) below which "auto" stops: what is left is a tenth of that, or less
@@ -66,9 +64,9 @@ def solve(
 
 
 def conformal(boundary: Boundary, *, polish: Polish = "auto") -> Solution:
-    """Return the grid inside an O boundary by Picard iteration in the strip, a conformal image of the domain.
+    """Return the grid inside an O boundary by Winslow's equations on a strip, the domain's conformal image.
 
-    Raises InputError if the boundary has another topology.
+    `polish` is the number of Picard iterations, ``auto`` or ``off``. Raises InputError for other boundaries.
     """
     if boundary.topology != "o":
         what = f"method conformal makes o grids, and this boundary is {boundary.topology}"

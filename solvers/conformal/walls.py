@@ -34,7 +34,7 @@ class StripWalls(NamedTuple):
 
 
 def walls(boundary: Boundary) -> StripWalls:
-    """Map wall and far field of an O boundary to a periodic strip. Raises InputError: no conformal map."""
+    """Map wall and far field of an O boundary to a strip. Raises InputError if there is no conformal map."""
     z, far = mirrored(boundary.south[:-1]), mirrored(boundary.north[:-1])
     hand, (point, direction) = handedness(z, far)
     # near the origin: far from it the map's branch points are subject to cancellation
@@ -50,9 +50,10 @@ def walls(boundary: Boundary) -> StripWalls:
 def is_rough(body: StripWalls) -> bool:
     """Return whether Fourier modes hardly resolve the uneven spacing of the wall, so that cells may fold.
 
-    The criterion is the sum of the amplitudes, in radians, of the highest Fourier modes of the wall in the
-    strip. Airfoils are rough from `SHARPEST` to `ROUGHEST`, for example with evenly spaced nodes around the
-    leading edge. Raises InputError for larger sums, and for other bodies or far fields above `SHARPEST`.
+    Wall and far field are curves in a strip, the conformal image of the domain. Let s be the sum of the
+    amplitudes, in radians, of the highest Fourier modes of a curve. Walls of airfoils are rough if s is
+    between `SHARPEST` and `ROUGHEST`, for example with evenly spaced nodes around the leading edge. Raises
+    InputError if s is larger, or if it is above `SHARPEST` for the far field or for another body.
     """
     n = len(body.wall)
     k = np.minimum(np.arange(n), n - np.arange(n))

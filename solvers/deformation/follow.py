@@ -47,13 +47,13 @@ class Field:
         return cls(sources, places, np.ascontiguousarray(areas[sources]), near, where)
 
     def blended(self, motions: Floats) -> Floats:
-        """Return the displacements (m, d) of `points`, weighted means of the sources' motions (`affine`)."""
+        """Return displacements (m, d) of m points; `motions` of boundary nodes are a result of `affine`."""
         moved = np.empty_like(self.points)
         blend_motions(self.places, self.areas, motions, self.near, self.points, thread_count(), moved)
         return moved.T
 
     def transposed(self, pull: Floats) -> Floats:
-        """Return the derivatives of the sum of `pull` (m, 2) * ``blended(motions)`` by `motions` (6, k)."""
+        """Return the gradient (6, k), with respect to `motions`, of ``(pull * blended(motions)).sum()``."""
         gathered = np.empty((6, len(self.areas)))
         force = np.ascontiguousarray(pull.T)
         blend_transposed(self.places, self.areas, self.near, self.points, force, gathered)
@@ -86,7 +86,7 @@ class Follow:
         return cls(table, sources, turning, slide, field, inner)
 
     def nodes_to(self, to: Floats) -> Floats:
-        """Return the new positions (n, d) of all nodes; only the rows of `to` (n, d) of moved nodes count."""
+        """Return new positions (n, d) of all nodes; only moved boundary nodes are read from `to` (n, d)."""
         there = self.boundary_to(to)
         there[self.inner] += self.field.blended(self._motions(self.field, there))
         return there
@@ -110,7 +110,10 @@ class Follow:
         return affine(old[at], there[at], turns)
 
     def along_sides(self, move: Floats, there: Floats) -> Floats:
-        """Make displacements `move` tangential to sliding sides that are flat, also at new nodes `there`."""
+        """Make displacements `move` (n, d) tangential, in place, to flat sides along which nodes slide.
+
+        A side is flat if its old nodes and its new ones, `there` (n, d), lie in one line or plane.
+        """
         for piece in self.sources.sliding:
             normal = normal_of(self.table, piece, there)
             if normal is not None:

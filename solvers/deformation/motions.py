@@ -45,7 +45,7 @@ class Turning:
         return self._at_nodes((slope * way).sum(axis=1), len(new))
 
     def angles_transposed(self, new: Floats, pull: Floats) -> Floats:
-        """Return the derivative (n, 2) with respect to `new` (n, 2) of the sum of `pull` (n,) * `angles`."""
+        """Return the gradient (n, 2), with respect to `new`, of ``(pull * angles(old, new)).sum()``."""
         onto = self._slopes(new) * (self.share * pull[self.edges]).sum(axis=1)[:, None]
         gathered = np.zeros_like(new)
         np.add.at(gathered, self.edges[:, 1], onto)

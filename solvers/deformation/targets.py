@@ -45,9 +45,9 @@ class NodeTargets:
 def targets_of(table: NodeTable, walls: Mapping[str, NewWall] | NewWall) -> NodeTargets:
     """Return the new positions of the nodes of walls.
 
-    `walls` has the new shape of each wall by name. A single shape is that of the only wall; a single grid or
-    boundary moves every wall that has the name of one of its patches. Raises InputError if the grid has no
-    wall of a given name, or if a new shape is unsuitable.
+    `walls` maps names of walls to their new shapes. If there is one wall, its new shape is enough. A `Grid`
+    or `Boundary` is also enough: its patches are the new shapes of the walls with the same names. Raises
+    InputError if the grid has no wall of a given name, or if a new shape is unsuitable.
     """
     moved, nodes = np.zeros(len(table.nodes), dtype=bool), table.nodes.copy()
     notes: list[str] = []

@@ -90,7 +90,7 @@ class Multigrid:
         return float(np.sqrt(level.residual(False) / level.x.size))
 
     def nested_iteration(self) -> float:
-        """Solve from coarse to fine; return the finest level's residual for transfinite interpolation."""
+        """Solve from coarse to fine. Return the residual of transfinite interpolation on the finest level."""
         last = len(self.levels) - 1
         self.interpolate_edges(last)
         start = self.residual(last)

@@ -39,8 +39,8 @@ def solve_steger_sorenson(
 ) -> Solution:  # fmt: skip
     """Solve Winslow's equations with sources that control angles and first-cell heights at edges.
 
-    A height below half of that without sources is raised to this half. Notes state the remaining error of the
-    angles, and whether sources were weakened because cells folded.
+    The least first-cell height is half the height without sources; smaller heights are raised to it. Notes
+    state the remaining error of the angles, and whether sources were weakened because cells folded.
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ class ControlledEdge:
     On line i, the sources at node j from the edge are p(i) e^{-b j} along the edge and q(i) e^{-b j} across
     it, with a constant b. On a uniform grid with steps dx along the edge and dy across it, a Fourier mode of
     p with wave number k rotates lines by (dy/dx) p/(b + k dy). Such a mode of q changes the logarithm of the
-    height by q/(b + k dy). A correction is therefore the error, with each mode multiplied by b + k dy.
+    height by q/(b + k dy). Solved for p and q, these relations give the corrections for measured errors.
 
     `across` is the number of nodes to the opposite edge. `periodic` means a closed edge. `angle` is the angle
     between edge and lines in degrees. `height` is the first-cell height, 0 if not controlled.

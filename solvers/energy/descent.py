@@ -73,7 +73,7 @@ def newton(nodes: Floats, weights: Weights, most: int) -> int:
 
 
 def stiffness_of(nodes: Floats, weights: Weights) -> tuple[Stiffness, tuple[int, int]] | None:
-    """Return the Hessian of the functional at `nodes` and the node counts; None if cells are folded."""
+    """Return (the variational functional's Hessian at `nodes`, node counts), or None if cells are folded."""
     if count_folded(nodes):
         return None
     hessian = Stiffness(np.moveaxis(nodes, -1, 0), aspect_of(nodes), weights.shape, weights.smoothness)
@@ -95,7 +95,7 @@ def listener_of(nodes: Floats) -> Callable[[int, float, float], None] | None:
 
 
 def in_cells(still: float, nodes: Floats) -> float:
-    """Return the tolerance `still` √N in cell sizes, with the number N of cells of `nodes` (ni, nj, 2)."""
+    """Return `still` times the square root of the number of cells of a grid with `nodes` (ni, nj, 2)."""
     return still * float(np.sqrt((nodes.shape[0] - 1) * (nodes.shape[1] - 1)))
 
 
@@ -110,8 +110,7 @@ def _made_valid(nodes: Floats, weights: Weights, periodic: bool) -> bool:
 def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floats) -> None:
     """In an O grid `nodes` (ni, nj, 2), unfold and optimise skewed cells and the cells near them, in place.
 
-    Cells are skewed where splines have smoothed grid lines that leave corners of the wall. `aspect` and
-    `relief` are the results of `aspect_of` and `relief_of` for the grid.
+    `aspect` and `relief` are the results of `aspect_of` and `relief_of` for the grid.
     """
     skewed = corner_distortion(nodes)
     poor = np.argwhere(skewed > SKEWED)

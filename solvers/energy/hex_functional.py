@@ -21,8 +21,9 @@ class HexWeights:
                 (1-q) (|u × v|² + |v × w|² + |w × u|²) / (3J) + q (|u|² |v|² |w|² / J²)^p
           + β mean of the squares of N^(1/3) Δ_e log l, for all three l, along all three directions e
 
-    Target lengths are the mean lengths along each direction for a new grid inside six faces, and smoothed
-    lengths of a given grid. The functional of cubes, with a cell's Jacobian matrix T (trilinear map), is::
+    For a new grid inside six faces, the target length in an index direction is the mean edge length along
+    it. For a given grid, target lengths are its smoothed edge lengths. With a cell's Jacobian matrix T
+    (trilinear map), the functional of cubes is::
 
         E = mean over cells of the integral of |T|² / (3 det(T)^⅔)
 

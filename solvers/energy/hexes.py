@@ -86,10 +86,7 @@ class HexProblem:
         self.descent = descent_of(self.nodes, tables, 1.0 / sizes, mesh.cells, (unknowns, projections))
 
     def run(self, weights: HexWeights, most: int, epsilon: float = 0.0) -> tuple[float, float]:
-        """Do at most `most` iterations; return the smallest Jacobian and the value of the functional.
-
-        `epsilon` regularises the Jacobians in the functional.
-        """
+        """Do up to `most` iterations, regularised by `epsilon`; return the least Jacobian and functional."""
         size = SIZE if epsilon > 0.0 else 0.0
         self.descent.weigh(weights.shape, weights.smoothness, weights.power, epsilon, size)
         value, smallest, done = self.descent.run(weights.gain, most, RENEWED, STILL, REACH)
@@ -102,7 +99,7 @@ class HexProblem:
         return self.descent.smallest()
 
     def unfold(self, smallest: float, rounds: int = ROUNDS, iterations: int = ROUND) -> float:
-        """Untangle cells by up to `rounds` minimisations; return the `smallest` Jacobian afterwards."""
+        """Untangle cells in up to `rounds` rounds. Return the least Jacobian, which was `smallest` before."""
         best, idle = smallest, 0
         for count in range(rounds):
             if smallest > 0.0 or idle == WITHOUT_GAIN:

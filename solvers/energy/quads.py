@@ -48,12 +48,12 @@ def optimise(
     Parameters
     ----------
     iterations : greatest number of iterations; iterations of untangling are not counted.
-    held : (n,) mask of fixed nodes; corners (`Places.cells` > 0) are fixed anyway.
+    held : (n,) mask of fixed nodes; corners of the domain are fixed anyway.
     aspects : (m,) for each cell, target length of its sides 1-2 and 0-3 divided by that of sides 0-1 and 3-2.
     targets : (e,) target lengths of `mesh.edges` in any unit, because only ratios of neighbours matter.
     tolerance : the iteration ends after two consecutive relative gains below a hundredth of this.
     turning : angle in radians by which a wall may turn along one edge without penalty.
-    weights : weights of angles and of smoothness. They are ignored without `targets` or a penalty for growth.
+    weights : weights of angles and of smoothness, used only with `targets` or with a penalty for growth.
     growth : weight of a penalty for growth ratios, and the logarithm of the largest ratio without penalty.
     """
     problem = problem_of(mesh, held, aspects, targets, turning)

@@ -58,8 +58,8 @@ def solve(
 
     Parameters
     ----------
-    tol : the iteration ends if no node moves by more than `tol` √N cell sizes, with the number N of cells.
-        None: 1e-4, with at most `FEW` iterations, or `FEW_AROUND` for O grids.
+    tol : the iteration ends if no node moves by more than `tol` times √N times the mean cell size, for N
+        cells. None: 1e-4, with at most `FEW` iterations, or `FEW_AROUND` for O grids.
     max_cycles : greatest number of iterations on the finest level.
     initial : a grid with the same node counts to start from, in place of coarser grids.
 

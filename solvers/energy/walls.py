@@ -34,10 +34,10 @@ class Walls:
 
 
 def walls_of(mesh: QuadMesh, fixed: Bools, tied: Bools) -> Walls | None:
-    """Return the walls of a mesh, with nodes whose arc lengths increase from edge to edge along each wall.
+    """Return the walls of a mesh. Nodes are moved along a wall where their arc lengths do not increase.
 
-    `fixed` (n,) is the mask of fixed nodes. `tied` (n,) is the mask of nodes on periodic sides, which are no
-    walls. Nodes that are not fixed are moved if necessary. Returns None if fixed nodes prevent an increase.
+    `fixed` (n,) is the mask of nodes that must not move. `tied` (n,) is the mask of nodes on periodic sides,
+    which are no walls. Returns None if fixed nodes prevent an increase.
     """
     places = mesh.places
     on = (places.loop >= 0) & ~tied
@@ -114,9 +114,9 @@ def _spread(arc: Floats, chain: Indices, length: float, ends: bool) -> None:
 
 @lru_cache(maxsize=256)
 def turned(loop: Loop) -> Floats:
-    """Return the absolute turning angle (n + 1,), in radians, accumulated along a loop; corners do not count.
+    """Return sums (n + 1,) of the absolute values of turning angles, in radians, up to each point of a loop.
 
-    Jumps of the tangent at points that are not corners are spread over both adjacent intervals.
+    Angles at corners are not counted. Those at other points are spread over both adjacent intervals.
     """
     curve = loop.curve
     _, first, second, third = (part[:, None] for part in curve.tables[0])

@@ -36,8 +36,8 @@ def first_cell(boundary: Boundary) -> float:
 def first_cell_around_base(width: float, away: float, chord: float, ni: int, nj: int) -> float:
     """Return the default first-cell height of a C grid around a body with a blunt base of this `width`.
 
-    It follows from the smallest cell length (at a sharp edge or on the base), the distance `away` to the far
-    field, and the node counts.
+    It follows from the distance `away` to the far field, the `nj` nodes over it, and the smallest wall cell.
+    The length of this cell is the lesser of two estimates: from `width`, and from `chord` and `ni`.
     """
     return _height(min(C_EDGE / ni * chord, COARSEST * width), away, nj)
 

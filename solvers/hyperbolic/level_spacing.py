@@ -1,8 +1,4 @@
-"""Spacing of the levels of a march: constant growth, but slower where lines from a sharp edge diverge.
-
-There, the front catches up after lagging behind at the edge, and cells would grow faster than along other
-lines.
-"""
+"""Spacing of the levels of a march: constant growth, but slower where lines from a sharp edge diverge."""
 
 import math
 from typing import NamedTuple
@@ -48,7 +44,7 @@ def fastest(nodes: Floats) -> Floats:
 
 
 def even_shares(nodes: Floats, steps: Floats, rate: float, constant: int) -> Floats:
-    """Return `shares` (n,) for `level_steps` with which the greatest growth ratio on each level is the same.
+    """Return logarithms (n,) of step ratios that give all levels the same largest growth, for `level_steps`.
 
     Parameters
     ----------

@@ -62,7 +62,7 @@ class Measures:
     slack: Floats | float = 1.0
 
     def at(self, places: Floats, closed: bool) -> Floats:
-        """Return the k functions (k, n) at positions `places` (n,), on closed curves in any turn."""
+        """Return values (k, n) of the functions at `places` (n,), also beyond a `closed` curve's ends."""
         turns = np.zeros(len(places))
         if closed:
             turns, places = np.divmod(places, self.arcs[-1])
@@ -72,12 +72,12 @@ class Measures:
 
     @cached_property
     def slopes(self) -> Floats:
-        """(k, m - 1) slopes of the k functions between each of the positions `arcs` and the next."""
+        """(k, m - 1) slopes of k functions along the curve, in the intervals between positions `arcs`."""
         return np.diff(self.values, axis=1) / np.diff(self.arcs)
 
     @property
     def whole(self) -> Floats:
-        """(k, 1) increase of each of the k functions along the whole curve."""
+        """(k, 1) increases of k functions from the start of the curve to its end."""
         return self.values[:, -1:] - self.values[:, :1]
 
 
@@ -97,7 +97,7 @@ class PlaceLinks:
     rest: Floats
 
     def values(self, places: Floats) -> Floats:
-        """Return the residuals (p,) of the p conditions for the positions `places` (n,)."""
+        """Return the residuals (p,) of p linear conditions on positions `places` (n,) along a curve."""
         return np.asarray((self.factors * places[self.pairs]).sum(axis=1) + self.rest)
 
 
@@ -113,7 +113,7 @@ def evened_places(
     The functions `measures` turn positions into lengths; steps are the differences of successive lengths.
     Positions in the mask `fixed` (n,) stay. `limit` is the logarithm of the largest ratio; it is relaxed if
     positions would move by more than `most` steps. On a `closed` curve, the last step leads to the first
-    position. `links` are further conditions. `change` weights the penalty on changes of ratios.
+    position. `links` are further conditions. With a larger weight `change`, ratios change less.
     """
     line = _Line.of(places, fixed, measures, closed, links, change)
     new = places
@@ -144,7 +144,7 @@ def evened_loops(
 ) -> Layout:
     """Return the layout with nodes moved along loops, so that steps between neighbours grow slowly.
 
-    `measures` has, by loop index, functions along a loop, such as arc length, in which steps are measured.
+    Steps are differences of functions along a loop, such as arc length; `measures` has them by loop index.
     `limit` and `most` are as in `evened_places`. Corners stay. If cells would fold, nothing is changed.
     """
     mesh = layout.mesh

@@ -33,7 +33,7 @@ Numbers = TypeVar("Numbers", Floats, Complexes)
 class GrowthLimit:
     """The penalty w Σ max(0, |ρ| - L)² + μ Σ (ρ - ρ0)² for logarithms ρ (..., k) of growth ratios.
 
-    `limit` is L. `wanted` (..., k) are the preferred values ρ0. `change` is the weight μ; methods get w.
+    `limit` is L, `wanted` (..., k) has the preferred values ρ0, `change` is μ. Methods have w as `weight`.
     """
 
     limit: float | Floats
@@ -42,17 +42,17 @@ class GrowthLimit:
 
     @classmethod
     def at(cls, growth: Floats, limit: float | Floats, change: float = CHANGE) -> Self:
-        """Return the penalty whose preferred values are logarithms `growth` (..., k), clipped to ±`limit`."""
+        """Return the penalty that keeps log growth ratios near `growth` (..., k), clipped to ±`limit`."""
         return cls(limit, np.clip(growth, -limit, limit), change)
 
     def values(self, growth: Floats, weight: float) -> Floats:
-        """Return the penalty (..., k) of `growth`, logarithms of ratios; `weight` is that of the excess."""
+        """Return the penalty (..., k) of log growth ratios, with the factor `weight` above the limit."""
         excess = np.maximum(np.abs(growth) - self.limit, 0.0)
         near = np.minimum(excess, LINEAR)
         return np.asarray(weight * near * (2.0 * excess - near) + self.change * (growth - self.wanted) ** 2)
 
     def residuals(self, growth: Floats, derivatives: Floats, weight: float) -> Residuals:
-        """Return Gauss-Newton residuals; `derivatives` (..., k, m) are growth's derivatives by m unknowns."""
+        """Return Gauss-Newton residuals of log growth ratios; `derivatives` (..., k, m) are by unknowns."""
         excess = np.maximum(np.abs(growth) - self.limit, 0.0)
         pull = weight * np.minimum(1.0, LINEAR / np.maximum(excess, LINEAR))
         stiffness = np.where(np.abs(growth) > self.limit - NEARLY, self.change + pull, self.change)
@@ -61,11 +61,11 @@ class GrowthLimit:
 
 
 def damped(values: Callable[[Numbers], Floats], at: Numbers, step: Numbers, part: Indices) -> Numbers:
-    """Return the changes `step` (m,) of m unknowns, halved as often as needed to decrease their values.
+    """Return the changes `step` (m,) of m unknowns, halved as often as needed to decrease p functions.
 
-    `values` computes p values from the unknowns, which are now `at` (m,). Each unknown affects one value,
-    whose index is in `part` (m,). Changes that affect the same value are halved together, and are 0 if it
-    never decreases.
+    `values` computes the functions from the unknowns, which are now `at` (m,). Unknown i affects only the
+    function ``part[i]``. Changes that affect the same function are halved together, and are 0 if it never
+    decreases.
     """
     start = values(at)
     share = np.ones(len(start))

@@ -20,8 +20,8 @@ def layer_arcs(
 
     The first `constant` cells have the height `first`, a number or (k,). Further heights never decrease.
     Their logarithms are a quadratic function of the index, and the last height is about `last` (k,). Let r be
-    the constant ratio that fills the line. If `last` is infinite, all ratios are r. Otherwise the logarithms
-    of ratios are at most (1 + `steeper`) log(r), or log(`growth`) if that is larger.
+    the constant ratio that fills the line. If `last` is infinite, all ratios are r. Otherwise no ratio
+    exceeds the larger of r^(1 + `steeper`) and `growth`; this limit takes precedence over `last`.
     """
     rows = cells - constant + 1  # the last constant cell and those that grow
     first = np.broadcast_to(np.asarray(first, dtype=np.float64), length.shape)

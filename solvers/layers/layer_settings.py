@@ -68,12 +68,12 @@ class LayerSettings:
 
     @property
     def steepest(self) -> float:
-        """Logarithm of the largest permitted ratio of neighbouring cells along lines that leave walls."""
+        """Logarithm of the largest allowed ratio of neighbouring cells on grid lines that start at walls."""
         return math.log(self.limit) if self.limit else self.elsewhere
 
     @property
     def elsewhere(self) -> float:
-        """Logarithm of the largest ratio of neighbouring cell sizes along lines that do not leave walls."""
+        """Logarithm of the largest allowed ratio of neighbouring cells on grid lines not starting at walls."""
         return max(ELSEWHERE * math.log(self.limit or self.growth), math.log(MOST_GROWTH))
 
     @property

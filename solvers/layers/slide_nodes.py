@@ -40,8 +40,8 @@ def slide_walls(boundary: Boundary) -> tuple[Boundary, Controls | None]:
     """Return the quad `boundary` with nodes moved on south and north, and the controls for the solver.
 
     The grid lines of an elliptic grid inside the new boundary leave both walls at right angles, except next
-    to oblique west and east sides and at kinks of the walls. The controls are a function φ(ξ) that preserves
-    the mean of the spacings of both walls; they are None if this is even.
+    to oblique west and east sides and at kinks of the walls. The controls, a function φ(ξ), preserve the
+    node spacing of the given walls, averaged over both; they are None if it is constant.
 
     Raises InputError if the topology is not ``quad``.
     """

@@ -18,7 +18,7 @@ OURS = "use a file made by meshonet train"  # remedy for a file that is no model
 
 
 class Kind(NamedTuple):
-    """A kind of model file: its header has `text` under the name ``kind``, `version` under that in `key`."""
+    """A kind of model file: the header's entry ``kind`` is `text`, and its entry named `key` is `version`."""
 
     text: str
     key: str
@@ -49,7 +49,7 @@ def read_model(path: Path) -> tuple[Kind, dict[str, Any], dict[str, NDArray[Any]
 
 
 def read_tensors(path: Path) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
-    """Return header and arrays of a safetensors file. Raises InputError: another file; values not finite."""
+    """Return header and arrays of a safetensors file. Raises InputError if it is none or has NaN or inf."""
     from safetensors import SafetensorError, safe_open
 
     source = str(path)

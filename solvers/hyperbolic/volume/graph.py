@@ -18,7 +18,7 @@ _WIDTH, _FALL = 4, 0.35  # rings of nodes around irregular ones that are smoothe
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """A neighbour of a node x, maybe a ghost node, at `own` x + `sign` y + `shift`; y is the node `base`."""
+    """Position `own` x + `sign` y + `shift` of a neighbour or ghost of the node at x; node `base` is at y."""
 
     base: int
     own: float = 0.0

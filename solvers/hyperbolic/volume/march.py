@@ -66,7 +66,7 @@ def march_surface(
 
     Parameters
     ----------
-    wing : whether to try other smoothing also if cells are valid, but poor.
+    wing : for wings, try other smoothing also if a scaled Jacobian is below 0.35, not only if cells fold.
     remedy : remedy in the error for folded cells, in place of the usual one.
 
     Raises InputError if settings are impossible or grids of two parts would overlap. Raises NoValidGridError,

@@ -75,8 +75,8 @@ class VolumeMarch:
 class Smoothing(NamedTuple):
     """Parameters of the smoothing while marching; ``kernels/surfaces/march.h`` describes most of them.
 
-    `outer` is the explicit smoothing far from the wall, relative to the smoothing near it. With
-    `outer` up to 6, levels around a sphere stay spheres; 16 makes better cells behind swept wings.
+    `outer` is the explicit smoothing far from the wall, relative to the smoothing near it. Up to 6, layers of
+    nodes around a sphere stay spheres; 16 makes better cells behind swept wings.
     """
 
     explicit: float = 0.3

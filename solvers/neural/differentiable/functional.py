@@ -45,7 +45,7 @@ class Functional:
         return energy
 
     def hessian(self, nodes: Tensor, aspect: Tensor, *, convex: bool = False) -> Stencil:
-        """Return second derivatives of the functional by `nodes` (batch, 2, ni, nj) without folded cells.
+        """Return second derivatives of the functional by `nodes` (batch, 2, ni, nj); no cell may be folded.
 
         `aspect`, by `aspect_of`, counts as a constant. `convex` returns a positive definite approximation.
         """

@@ -73,7 +73,7 @@ def variational(
     ----------
     south, north, west, east : as in `transfinite`.
     coarse : int, optional
-        As in `winslow`, for example 65 to limit the cost. Interpolated grids are not exactly optimal.
+        As in `winslow`, for example 65 to limit the cost. The grid is then not exactly optimal.
     failed : {"raise", "nan"}
         As in `winslow`.
 

@@ -20,7 +20,7 @@ class Equations(Protocol):
         ...
 
     def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the solutions (batch, 2, ni, nj), and a parameter (batch,) of each for `adjoint`.
+        """Return the solutions (batch, 2, ni, nj), and for each a number (batch,) that `adjoint` needs.
 
         Only the boundary nodes of `nodes` are used. Raises MemberError if a grid has no solution.
         """
@@ -29,8 +29,8 @@ class Equations(Protocol):
     def adjoint(self, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
         """Return the derivatives (batch, 2, ni, nj) of functionals of grids with respect to boundary nodes.
 
-        `nodes` are the solutions, `number` their parameters from `solve`. `gradient` has the derivatives of
-        the functionals with respect to all nodes. The result has no meaning at inner nodes.
+        `nodes` and `number` are the results of `solve`. `gradient` has the derivatives of the functionals
+        with respect to all nodes. The result has no meaning at inner nodes.
         """
         ...
 

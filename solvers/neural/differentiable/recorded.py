@@ -20,9 +20,9 @@ from meshonet.solvers.neural.differentiable.members import (
 def recorded(
     function: Callable[..., Tensor], *sides: Tensor, counts: tuple[int, int] | None = None
 ) -> Tensor:
-    """Return nodes (batch, ni, nj, 2) by `function` for `sides` (batch, n, 2), so that `vmap` can be used.
+    """Return nodes (batch, ni, nj, 2) that `function` computes from `sides` (batch, n, 2), also under `vmap`.
 
-    If `counts` (ni, nj) are given, members without a grid get NaN nodes; otherwise MemberError is raised.
+    With `counts` (ni, nj), domains without a grid get NaN nodes. Otherwise MemberError is raised.
     """
     call = partial(_of_unit_size, function)
     if counts is not None:

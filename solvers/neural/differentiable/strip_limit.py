@@ -30,7 +30,7 @@ def picard(c: Tensor) -> Tensor:
 class Settled(torch.autograd.Function):
     """Torch function from initial to converged solutions of Winslow's equations in the strip.
 
-    Both are Fourier modes along theta (batch, modes, LEVELS); the highest are held near the initial ones.
+    Both are Fourier modes along theta (batch, modes, LEVELS). The highest modes change little.
     """
 
     @staticmethod

@@ -59,7 +59,7 @@ class Optimum:
         return newton(nodes + bordered(inner(start - nodes)), smoothness), smoothness
 
     def adjoint(self, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
-        """Return the derivative of a functional with respect to the boundary nodes of optimal grids."""
+        """Turn a functional's `gradient` by all nodes into that by boundary nodes (`Equations.adjoint`)."""
         functional = Functional(Weights().shape, number)
         with torch.enable_grad():
             x = nodes.detach().requires_grad_()
@@ -70,7 +70,7 @@ class Optimum:
 
 
 def newton(nodes: Tensor, smoothness: Tensor) -> Tensor:
-    """Return the minima (batch, 2, ni, nj) of the variational functional near `nodes` without folded cells.
+    """Return the minima (batch, 2, ni, nj) of the variational functional near the unfolded grids `nodes`.
 
     `smoothness` (batch,) weights its smoothness term. Raises MemberError with grids that do not converge.
     """

@@ -25,7 +25,7 @@ class ModelTask(Task):
 
     `targets` (n, ni, nj, 2) are the wanted outputs for the shapes `training`. `points` has the numbers of
     points drawn in each step, inside and on the boundary; None takes all. `seed` seeds initial weights and
-    points. The method `figures` measures errors on the attribute `samples`; it is `training` unless replaced.
+    points. The method `figures` measures errors on the attribute `samples`, which is `training` at first.
     """
 
     def __init__(

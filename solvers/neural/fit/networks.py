@@ -34,8 +34,8 @@ class NamedParameters(nn.Module):
 class StripFNO(NamedParameters):
     """The network for airfoils (`StripNetwork`) as a torch module.
 
-    `inputs`, `scalars` and `outputs` are numbers of channels of input and output (`strip.encoding`). `width`,
-    `modes` and `layers` are the numbers of channels, Fourier modes and Fourier layers of the hidden state.
+    The input has `inputs` channels along the strip and `scalars` single numbers, the output `outputs`
+    channels. `width` is the number of hidden channels, `modes` of Fourier modes, `layers` of Fourier layers.
     """
 
     def __init__(

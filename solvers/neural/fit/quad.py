@@ -119,7 +119,7 @@ class QuadTask(Task):
         return {"loss": loss["variational"], **loss}
 
     def answers(self) -> Tensor:
-        """Return the network's grids (m, heads, n, n) of m held-out domains, one head per kind of grid."""
+        """Return predictions of both grids of each held-out domain, as complex nodes (m, 2, n, n)."""
         with torch.no_grad():
             pairs = zip(*(torch.split(z, 100) for z in (self.held_out.base, self.held_out.step)), strict=True)
             parts = [self._answers(self.mean, *(z.to(self.device) for z in pair)).cpu() for pair in pairs]

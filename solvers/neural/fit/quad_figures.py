@@ -19,11 +19,12 @@ Grids = NDArray[np.complexfloating[Any, Any]]
 
 
 def held_out_figures(answers: Grids, base: Grids, winslow: Grids, variational: Grids) -> dict[str, Any]:
-    """Return error measures of the grids that a network predicts for m domains, `answers` (m, 2, n, n).
+    """Return error measures of the complex grids that a network predicts for m domains.
 
-    Their targets are the grids `winslow` and `variational` (m, n, n). ``max`` is the largest cell angle of a
-    grid, ``mean`` the mean of each cell's largest angle. A gain is the decrease of such angles from `winslow`
-    to the second prediction, divided by that to `variational`; grids with folded cells are left out.
+    `answers` (m, 2, n, n) are predictions of `winslow` (m, n, n) and of `variational`, made from `base`. The
+    largest cell angle of a grid is ``max``, the mean of each cell's largest angle ``mean``. A gain is the
+    decrease of such an angle from `winslow` to the prediction of `variational`, divided by the decrease from
+    `winslow` to `variational`. Folded grids are left out.
     """
     solved, best = angles(winslow), angles(variational)
     valid = solved[0] < 360.0
@@ -71,8 +72,8 @@ def excess(z: Tensor, goal: Tensor) -> tuple[Tensor, Tensor, Tensor]:
     """Return three measures (batch,) of how much worse complex grids `z` (batch, m, n) are than `goal`.
 
     The first two compare the greatest angle of each cell. They are the increases, in radians, of the mean and
-    of the maximum over all cells; decreases count as 0. The third grows with the amounts by which angles are
-    outside of `NARROW` to `WIDE` and also outside of the range of angles in the same cell of `goal`.
+    of the maximum over all cells; decreases count as 0. The third grows with the amounts by which angles
+    exceed both `WIDE` and the greatest angle of the cell in `goal`, or are below `NARROW` and its least one.
     """
     least, most = extremes(z)
     with torch.no_grad():

@@ -41,15 +41,14 @@ class Quads:
         return Quads(base, step, winslow, variational, self.around)
 
     def grids(self) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-        """Return the arrays `base`, `step`, `winslow` and `variational`."""
+        """Return `base` (initial grids), `step` (their last change), and targets `winslow`, `variational`."""
         return self.base, self.step, self.winslow, self.variational
 
 
 def quads_of(datasets: Iterable[Iterable[Grid]]) -> Quads:
     """Return the domains for which `datasets` have a grid by ``winslow`` and a grid by ``variational``.
 
-    The first grid determines the method of a dataset. Raises InputError if one of the two methods is missing,
-    if there is another method, and as `quads`.
+    The first grid of a dataset tells its method. Raises InputError as `quads`, or if methods are not these.
     """
     groups: dict[str, list[Grid]] = {}
     for dataset in datasets:

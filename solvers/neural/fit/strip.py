@@ -40,9 +40,9 @@ class StripSizes:
 
 
 class StripTask(Task):
-    """Training of the network for airfoils on Winslow's solutions in the strip and their mirror images.
+    """Training of the network for airfoils on Winslow's solutions and their mirror images.
 
-    `held_out` has the solutions on which errors are measured, `sizes` has the sizes of the network.
+    Solutions are grids in a strip, the conformal image of the domain. Errors are measured on `held_out`.
     """
 
     parts: tuple[str, ...] = ("difference",)
@@ -71,7 +71,7 @@ class StripTask(Task):
         return {"loss": median, "p90": p90, "worst": worst}
 
     def answers(self) -> list[Complexes]:
-        """Return for each held-out body predicted modes of Winslow's solution minus the harmonic one."""
+        """Return predicted Fourier modes of Winslow's minus the harmonic solution, for each held-out body."""
         channels, scalars, size = encode(self.held_out.wall, self.held_out.far)
         with torch.no_grad():
             out = self.net(tensor(channels).to(self.device), tensor(scalars).to(self.device)).cpu()

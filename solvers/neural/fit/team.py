@@ -13,7 +13,7 @@ from meshonet.solvers.neural.fit.plan import Device
 
 @dataclass(frozen=True)
 class Team:
-    """One of the processes that train a model together."""
+    """One process of a group that trains a model together: its device and `rank`, and the group's `size`."""
 
     device: torch.device  # of this process
     rank: int = 0  # index of this process, and number of processes

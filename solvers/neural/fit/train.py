@@ -46,7 +46,7 @@ def train(
         `Samples`.
     output : path of the model file.
     plan : settings of the training loop (see `standard`).
-    team : which of the processes that train together this one is.
+    team : this process among those that train the model together.
     recipe : settings to store in the model file.
     held_out : number of shapes that are not used for training; None: the default of the model.
     resume : whether to continue from the checkpoint that belongs to `output`.

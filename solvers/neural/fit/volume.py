@@ -80,7 +80,7 @@ class VolumeTask(Task):
         return torch.cat([0.5 * torch.exp(-self.spread) * both, 0.5 * self.spread.sum()[None]])
 
     def differentiate(self, parts: Tensor, team: Team) -> None:
-        """Compute the gradients of the terms `parts` of the loss; `project` is applied if they conflict."""
+        """Compute gradients of the loss terms `parts`, without opposing components if `model.projected`."""
         if not self.model.projected:
             super().differentiate(parts, team)
             return
@@ -178,7 +178,7 @@ def run(
 ) -> Run:  # fmt: skip
     """Return the run that trains a network for each volume of `data`.
 
-    Raises InputError if settings are unknown, or if `held_out` is not 0, since networks are not shared.
+    Raises InputError if settings are unknown, or if `held_out`, a number of volumes to leave out, is not 0.
     """
     if held_out:
         raise InputError("a network for one volume holds none out", "leave {held_out} out")
