@@ -41,7 +41,7 @@ class Format:
     one_size : whether all samples of a file must have the same node counts and topology.
     beside : whether other files are written next to the file, so that it cannot be written to a stream.
     fills_folder : whether a grid is a folder of files; a user names one of them, such as ``case.foam``.
-    choices : options that a user may append to the name, in groups of which one may be chosen.
+    choices : groups of options that a user may append to the name; options of one group exclude each other.
     reads_options : whether `read_grids` has a parameter ``options``, as `write_grids` has.
     suffix_options : for an extension, the option that it implies when a file is written.
     """
@@ -81,7 +81,7 @@ class Format:
     def with_options(self, text: str) -> Format:
         """Return the format with comma-separated options; those after a colon override those before it.
 
-        Raises InputError if an option is unknown, or if two with no colon between them exclude each other.
+        Raises InputError: an unknown option; options that exclude each other without a colon between them.
         """
         if not text.strip(":"):
             return self

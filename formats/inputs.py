@@ -125,7 +125,7 @@ class Inputs:
         return len(list(islice(self, _BEGINNING)))
 
     def count(self) -> int | None:
-        """Return the number of files and samples in the shard; None if an input is standard input."""
+        """Return the number of inputs in the shard, counting dataset samples; None with standard input."""
         if any(word in ("-", "@-") for word in self.words):
             return None
         return -(-sum(count for _, _, count in self._counted()) // self.shard[1])

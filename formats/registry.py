@@ -51,7 +51,7 @@ def format_named(name: str) -> Format:
 
 
 def format_of(source: Source, fmt: str | None = None) -> Format:
-    """Return the format `fmt` or, by default, of the extension or content. Raises InputError if unknown."""
+    """Return the format called `fmt`, or else find it by extension or content. Raises InputError: unknown."""
     if fmt:
         return format_named(fmt)
     claimed = BY_SUFFIX.get(source.suffix, [])
@@ -167,9 +167,9 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
 
 
 def read_sections(text: str, fmt: str | None = None) -> Iterator[Grid | Shape]:
-    """Yield the grids of a file. A layout, a file without grids or a name such as ``naca:2412`` gives shapes.
+    """Yield the grids in a file or, if it has none, the shapes in it.
 
-    Raises InputError as `read_shapes`.
+    A name (``naca:2412``) and a layout of blocks also give shapes. Raises InputError as `read_shapes`.
     """
     if not is_designation(text):
         record = format_of(open_source(text), fmt)

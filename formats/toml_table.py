@@ -27,7 +27,7 @@ class Table:
 
     @contextmanager
     def located(self) -> Iterator[None]:
-        """Return a context that puts the place of this table in front of the places of errors."""
+        """Return a context in which error messages begin with the place of this table: ``sections[1]``."""
         try:
             yield
         except InputError as error:
@@ -119,7 +119,7 @@ class Table:
         return x, y
 
     def pairs(self, key: str, least: int, columns: str = "x, r") -> list[list[float]]:
-        """Return the `least` or more pairs of numbers at `key`; `columns` is what messages call a pair."""
+        """Return pairs of numbers at `key`, at least `least`; messages show a pair as ``[columns]``."""
         rows = self.data.get(key)
         if not isinstance(rows, list) or len(rows) < least:
             raise self.error(

@@ -161,7 +161,9 @@ def frame(views: Sequence[Box], bar: bool) -> tuple[Figure, list[Axes], Axes | N
 
 
 def step_words(steps: list[int]) -> str:
-    """Return a note on grid lines left out, or ""; a step k of the ascending `steps` draws every k-th line.
+    """Return a note on grid lines left out, or "".
+
+    In each direction of each block, every k-th line is drawn; `steps` are the different k, ascending.
 
     >>> step_words([1, 5]), step_words([2]), step_words([1])
     ('not all lines are drawn', 'every 2nd line', '')

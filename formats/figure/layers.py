@@ -136,8 +136,7 @@ def rule(
 ) -> None:
     """Draw every n-th grid line of the cells `part`, and the last line.
 
-    `steps` has n for the lines i = const and for the lines j = const. With `flipped`, lines are counted
-    backwards.
+    `steps` has n for lines i = const and for lines j = const. If `flipped`, lines are counted backwards.
     """
     from matplotlib.collections import LineCollection
 
@@ -203,7 +202,7 @@ def _blocks(sizes: Floats) -> NDArray[np.intp]:
 
 
 def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
-    """Return (edge lengths along i, areas), then the same along j, (n,) each, of n of the cells in view."""
+    """Return edge lengths along i and areas, both (n,), of a sample of n visible cells; the same for j."""
     i, j = np.nonzero(part.mask)
     stride = max(1, len(i) // _SAMPLE)
     i, j = i[::stride] + part.i0, j[::stride] + part.j0

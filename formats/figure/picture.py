@@ -100,5 +100,5 @@ def write(
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, kind: str) -> None:
-    """Draw the only grid of `grids` without colours."""
+    """Write a picture, without colours, of the one grid in `grids`."""
     write(path, only_one(grids, f"a .{kind} file"), kind)

@@ -100,7 +100,10 @@ def check_flat(view: View) -> None:
 
 
 def flat_box(zoom: tuple[float, ...] | None, across: int | None = None) -> Box | None:
-    """Return `zoom` as four limits, without those of `across` if it has six. Raises InputError: not four."""
+    """Return `zoom` without the two limits of axis `across` (0, 1 or 2) if it has six limits.
+
+    Raises InputError unless four limits are left.
+    """
     if zoom is None:
         return None
     if len(zoom) == 6 and across is not None:

@@ -108,7 +108,7 @@ class Part:
 def shown_parts(file: h5py.File, source: Source) -> list[Part] | None:
     """Return the parts of a dataset in order, or None if the open `file` is no index of parts.
 
-    Raises InputError if a part is missing or not in a folder beside the index, or if parts leave a gap.
+    Raises InputError: a part that is missing or not in a folder beside the index; samples that no part has.
     """
     import h5py
 
@@ -148,7 +148,7 @@ def _parts(mappings: Any, index: Path, split: str) -> Iterator[Part]:
 
 
 def write_index(file: Path, index: Path, parts: Sequence[PartFacts]) -> None:
-    """Write a dataset's index to `file`, to be moved to `index`. Raises InputError: `parts` do not match."""
+    """Write an index to `file`; the caller moves it to `index`. Raises InputError: `parts` do not match."""
     filled = [facts for facts in parts if facts.count]
     first = filled[0]
     for facts in filled[1:]:

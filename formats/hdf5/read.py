@@ -34,7 +34,7 @@ def read_shapes(source: Source) -> Iterator[Shape]:
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
-    """Return an iterator over the grids. After an invalid grid, which raises InputError, it continues."""
+    """Return an iterator over the grids. After an InputError for an invalid grid, `next` gives the others."""
     return map(call, samples_read(source, _grid))
 
 

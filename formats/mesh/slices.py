@@ -36,7 +36,7 @@ def surfaces_wanted() -> Iterator[None]:
 class IndexedNodes:
     """Nodes (ni, nj, 2 or 3) or (ni, nj, nk, 3) of a block, and how its indices relate to the file's.
 
-    `axes` are the file's indices for i, j and k. If `reversed`, i runs against its index in the file.
+    ``axes[k]`` tells which file index (0, 1 or 2) runs along direction k; if `reversed`, i runs against it.
     """
 
     nodes: Floats
@@ -58,8 +58,8 @@ def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> 
     """Return the nodes of each block of a file, given as coordinates x, y[, z] of shape (n1, n2, n3) each.
 
     Blocks are planar if each is one layer of nodes with constant x, y or z, or two such layers that differ
-    only in this coordinate. The coordinate has the same values in all blocks and is left out. Otherwise, or
-    in the context `surfaces_wanted`, a block of one layer is a surface patch; other blocks are volumes.
+    only in this coordinate, with the same values in all blocks. This coordinate is then left out. Otherwise,
+    or inside ``with surfaces_wanted()``, blocks of one layer are surface patches, others are volumes.
     Left-handed planar blocks and volumes are reversed along i. `places` are names of blocks in messages.
     Raises InputError if a block has no cells.
     """
@@ -78,7 +78,7 @@ def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> 
 
 
 def planar(coordinates: Sequence[Floats]) -> Floats:
-    """Return nodes (ni, nj, 2) from x, y[, z] of a plane or of shifted copies. Raises InputError: neither."""
+    """Return nodes (ni, nj, 2) from x, y[, z] of a plane or its shifted copies; others raise InputError."""
     with np.errstate(all="ignore"):
         cut = _slice_of(coordinates, most=max(coordinates[0].shape))
         if cut:

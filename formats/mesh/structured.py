@@ -80,9 +80,9 @@ def grids_of_file(
     """Yield the grids of a file; `lattices` decides whether its blocks are planar.
 
     Blocks that touch form one grid, and so do all blocks that are surface patches. A single grid has the name
-    `name`. Of several grids, one of a named block has the block's name, others `name` with a number. Unnamed
-    outer edges of planar blocks get names. Raises InputError: a block without cells; unusable nodes;
-    interfaces that do not coincide.
+    `name`. If there are several, a grid that is a single named block has the name of the block, others have
+    `name` with a number. Unnamed outer edges of planar blocks get names. Raises InputError: a block without
+    cells; unusable nodes; interfaces that do not coincide.
     """
     if blocks:
         read = lattices([block.coordinates for block in blocks], [block.place for block in blocks])

@@ -87,7 +87,7 @@ def part_of(window: FaceWindow, lattices: Sequence[IndexedNodes]) -> SidePart | 
 
 
 def patch_of(face: Face, lattices: Sequence[IndexedNodes]) -> Patch | None:
-    """Return the patch of a rectangle of nodes; None if it is not on exactly one side (see `part_of`)."""
+    """Return the patch on a rectangle of nodes; None if they are not all on exactly one side of a block."""
     part = part_of(face.window, lattices)
     if part is None:
         return None

@@ -36,10 +36,10 @@ _ZONE = "passage"  # name of the zone of a grid without one
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
     """Write the only grid of `grids` into the folder of `path`; the file at `path` is left empty.
 
-    For a planar grid, and for one layer between symmetry planes, both planes form a patch of type ``empty``.
-    Cells at collapsed sides become prisms or pyramids. In blade rows, and if periodic sides are related by a
-    rotation, all cells form a zone with the name of the grid, for a rotating frame. Missing dictionaries in
-    ``system`` are added.
+    A planar grid becomes one layer of cells. The two planes of this layer, or of a volume with one layer of
+    cells between symmetry planes, form a patch of type ``empty``. Cells at collapsed sides become prisms or
+    pyramids. In blade rows, and if periodic sides are related by a rotation, all cells form a zone with the
+    name of the grid, for a rotating frame. Missing dictionaries in ``system`` are added.
     """
     grid = only_one(grids, "a case")
     low, high = grid.box

@@ -51,7 +51,7 @@ def read_wkt(source: Source) -> Iterator[Shape]:
 def read_geojson(source: Source) -> Iterator[Shape]:
     """Yield the shapes of a GeoJSON file; the property ``name`` of a feature is the name of its shape.
 
-    Raises InputError, with the feature: not GeoJSON; no outline; unsuitable `corners`, `names` or `periodic`.
+    Raises InputError: not GeoJSON; no outline; unsuitable properties (``corners``, ``names``, ``periodic``).
     """
     from shapely.errors import ShapelyError
     from shapely.geometry import shape

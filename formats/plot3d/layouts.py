@@ -31,7 +31,7 @@ MOST_INTEGERS = 1 + 3 * _MOST_BLOCKS  # number of integers in the longest header
 
 @dataclass(frozen=True)
 class FileLayout:
-    """Layout of a file: with or without block count and iblank, 2 or 3 coordinates, and node counts."""
+    """Layout of a file: number of coordinates, node counts, and whether it has block count and iblank."""
 
     counted: bool
     axes: int
@@ -51,7 +51,7 @@ class FileLayout:
         )
 
     def length(self, real: int = 1, integer: int = 1) -> int:
-        """Return the length of the file, if a coordinate takes `real` and an integer `integer` bytes."""
+        """Return the length of the file, with `real` bytes per coordinate and `integer` per integer."""
         return self.starts(real, integer)[-1]
 
 
@@ -87,7 +87,8 @@ class Candidate:
     stream : content of the file.
     real, integer : number types of coordinates, and of node counts or other integers.
     planes : whether the arrays of a block are stored plane by plane.
-    numbers, kind : number type and byte order, first as text for messages, then as options of the format.
+    numbers : text for messages, with the type of coordinates and the byte order.
+    kind : the same as Plot3D options.
     """
 
     layout: FileLayout
@@ -158,8 +159,8 @@ class Candidate:
     def regularity(self) -> float:
         """Return the fraction of cells with the prevailing orientation; negative if values are impossible.
 
-        Orientations are random if the assumed file layout is wrong. A surface gets a smaller result, as its z
-        may be the iblank of a planar grid. Only the first nodes along each index are examined.
+        Orientations are random if the assumed file layout is wrong. For a surface the result is reduced by
+        0.1, as its z may in truth be iblank of a planar grid. Only the first nodes along each index count.
         """
         for block in self.blocks:
             if not all(_sane(values) for values in self.arrays(block)):

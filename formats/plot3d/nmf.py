@@ -35,7 +35,7 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 
 
 def write_map(path: Path, grids: Sequence[Grid], span: int = 2) -> None:
-    """Write the neutral map of all blocks. In the file, index k of a grid has the place `span`: 0, 1 or 2."""
+    """Write the neutral map of all blocks. Direction k of a grid has number `span`, 0 to 2, in the file."""
     dims: list[list[int]] = []
     rows: list[str] = []
     for grid in grids:
@@ -117,7 +117,7 @@ class Map(NamedTuple):
 
 
 def read_map(path: Path, dims: Sequence[tuple[int, int, int]]) -> Map:
-    """Return faces and connections from a map file. Raises InputError: they do not fit node counts `dims`."""
+    """Return faces and connections from a map file. Raises InputError: other node counts than `dims`."""
     name = printable(path.name)
     try:
         if path.stat().st_size > _MOST_BYTES:

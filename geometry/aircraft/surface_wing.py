@@ -22,12 +22,11 @@ _LEVELS = 33  # number of heights between root and tip at which chords are measu
 
 @dataclass(frozen=True, eq=False)
 class SurfaceWing:
-    """A wing given by strips of nodes from root to tip, with straight lines along the span.
+    """A wing given by its nodes at stations along the span, with straight lines between stations.
 
-    A strip is an array (stations, n, 3): n nodes around the section at each station along the span. The
-    strips follow each other around the section, from the trailing edge over the upper side to the nose and
-    back. The nodes of a strip at a station are on a cubic spline. z increases from station to station. The
-    wing ends in a plane of constant z.
+    Around the section, the surface is divided into strips, each from root to tip. They are numbered from the
+    trailing edge over the upper side to the nose and back. A strip is an array (stations, n, 3): n nodes at
+    each station, with a cubic spline through them. z increases along the span; the wing ends at a constant z.
 
     Raises InputError: a strip of another shape; a line along the span on which z does not increase.
     """
@@ -76,7 +75,7 @@ class SurfaceWing:
 
     @property
     def z(self) -> Floats:
-        """Equally spaced z (n,) from the first complete section, at the root, to the tip."""
+        """Equally spaced z (n,), from where the last line along the span begins at the root, to the tip."""
         begin = max(float(strip[0, :, 2].max()) for strip in self.strips)
         return np.linspace(begin, self.height, _LEVELS)
 
@@ -105,7 +104,7 @@ class SurfaceWing:
 
     @cached_property
     def nose(self) -> float:
-        """Position of the nose around the section, counted in strips as in the method `line`."""
+        """Number of strips before the nose, from the upper trailing edge, with a fraction (see `line`)."""
         z = self.z[[_LEVELS // 2]]
         rows = [at_heights(strip, z)[0] for strip in self.strips]
         edge = 0.5 * (rows[0][0] + rows[-1][-1])
@@ -121,7 +120,7 @@ class SurfaceWing:
     def line(self, place: float) -> Floats:
         """Return the line (stations, 3) along the span at a `place` around the section.
 
-        The integer part of `place` is an index of `strips`, the rest a fraction of the strip's arc length.
+        Place 1.25 is in the second strip, number 1, at a quarter of its arc length around the section.
         """
         return self.lines(np.array([place]))[0]
 
@@ -135,11 +134,11 @@ class SurfaceWing:
         return out
 
     def arc(self, place: float) -> float:
-        """Return the length in chords from the upper trailing edge to `place` (see `line`), at half span."""
+        """Return the arc length, in chords at half span, around the first `place` strips (see `line`)."""
         return float(np.interp(place, np.arange(len(self.strips) + 1), self._bounds))
 
     def places(self, arcs: Floats) -> Floats:
-        """Return places (n,) around the section (see `line`) at arc lengths (n,); the inverse of `arc`."""
+        """Return the numbers of strips (n,), with fractions, of lengths `arcs` (n,); the inverse of `arc`."""
         return np.interp(arcs, self._bounds, np.arange(len(self.strips) + 1))
 
     @property

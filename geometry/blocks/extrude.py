@@ -36,9 +36,8 @@ def extruded(grid: Grid, heights: Sequence[float]) -> Grid:
     """Return the volumes of a planar `grid`, whose nodes are repeated at each z of `heights`.
 
     There are at least two heights, in increasing order. Patches and connections extend over all of them. In a
-    grid around a body, the body becomes a wall unless its patches have another kind. The sides `bottom` of
-    all blocks form the symmetry plane ``back``, the sides `top` form ``front``. Patches of `grid` with these
-    names are renamed.
+    grid around a body, the body becomes a wall unless its patches have another kind. The sides `bottom` form
+    the symmetry plane ``back``, the sides `top` form ``front``; patches with these names are renamed.
 
     Raises InputError: blocks that are not planar, fewer than two heights, heights that do not increase.
     """
@@ -61,7 +60,7 @@ def thickened(
 
     `nodes` has an array (ni, nj, nk, 3) of finite nodes for each block. Patches and connections extend over
     all planes of nodes. `ends` has the name and kind of the patch on the first plane, then on the last. If
-    `ends` is None, the two planes are connected: `motion` moves the first to the last, or both are the same.
+    `ends` is None, the planes are connected: `motion` moves the first to the last; if None, they coincide.
 
     Raises InputError: blocks that are not planar; nodes that differ where blocks are connected.
     """

@@ -243,9 +243,9 @@ def _connection(cells: _SideCells, group: _Group, part: Indices) -> Connection:
 def rounding(values: Floats) -> Callable[[Floats], Floats]:
     """Return a function that maps magnitudes (n,) of coordinates to the units (n,) of their last digits.
 
-    The units are estimated from `values` (m,), the coordinates of a file. They have single precision, a fixed
-    number of digits, or a fixed number of decimals. Two copies of a point may differ by one such unit, which
-    next to walls can be a large part of a cell.
+    The units are estimated from `values` (m,), the coordinates of a file. These may have single precision, a
+    fixed number of digits, or a fixed number of decimals. Two copies of a point may differ by one such unit,
+    which next to walls can be a large part of a cell.
 
     >>> unit = rounding(np.array([0.123457, 12.345679, 3.0]))  # written by %.6f
     >>> unit(np.array([1.0, 2.0])).tolist()

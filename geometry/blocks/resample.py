@@ -25,9 +25,8 @@ _ACROSS: tuple[Side, Side] = ("west", "east")
 def resample_edge(nodes: Floats, m: int, *, closed: bool) -> Floats:
     """Return `m` >= 2 nodes (m, 2) on the curve through `nodes` (n, 2), distributed like `nodes`.
 
-    The arc length at each fraction of the index range stays the same. Corners of the curve remain nodes if
-    `m` is large enough; the end nodes are kept bitwise. A `closed` edge repeats its first node at the end,
-    both in `nodes` and in the result.
+    Corners of the curve remain nodes if `m` is large enough; the end nodes are kept bitwise. A `closed` edge
+    repeats its first node at the end, both in `nodes` and in the result.
 
     Raises InputError: the errors of `Curve`.
 
@@ -55,8 +54,7 @@ def resample_edges(
     """Return the four `edges` of a block, resampled to `ni` nodes along xi and `nj` along eta.
 
     The wake is the first and the last `wake` cells of the south edge. The nodes of these two parts stay
-    equal, and the fraction of the edge's cells that belong to the wake is kept. `closed` says whether south
-    and north are closed.
+    equal, and the fraction of the edge's cells in the wake is kept. If `closed`, south and north are closed.
 
     Raises InputError: too few nodes for a closed edge, or for the wall between the two sides of a wake.
     """

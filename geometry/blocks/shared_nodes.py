@@ -29,8 +29,8 @@ def shared_nodes(
     """Return arrays of the global numbers, from 0, of the nodes of blocks with `counts` nodes per direction.
 
     Nodes that connections join, directly or through other nodes, have the same number. Numbers ascend from
-    block to block. Within a block, the last index varies fastest, with `order` F the first. Unless
-    `periodic`, the two sides of a periodic connection have separate numbers.
+    block to block. Within a block, the last index varies fastest or, if `order` is F, the first index.
+    Unless `periodic`, the two sides of a periodic connection have separate numbers.
     """
     ends, numbers = numbered(counts, order)
     joined = [each.pairs(numbers) for each in connections if periodic or each.transform is None]

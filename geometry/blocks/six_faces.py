@@ -87,9 +87,9 @@ class SixFaces:
         return edge_of(getattr(self, side), side, second)
 
     def steps_at_edge(self, side: Side, second: Side) -> Floats:
-        """Return vectors (n, 3) between the last two rows of the face `side` at its edge with face `second`.
+        """Return the grid steps (n, 3) in face `side` between its edge with face `second` and the next row.
 
-        They point towards the row of the higher index.
+        They point towards the higher index, even if this is the edge.
         """
         axis, end = PLACES[second]
         rows = np.moveaxis(getattr(self, side), axis - (axis > PLACES[side][0]), 0)

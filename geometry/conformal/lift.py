@@ -51,9 +51,10 @@ class Corner:
 class Lift:
     """The conformal map from the plane z around a body to a strip w = psi + i phi of period 2 pi.
 
-    Joukowski's map z = centre + quarter (zeta + 1/zeta) comes first. `corners` are the maps that straighten
-    corners of the body. `pole` is the centroid of the wall after all these maps. `phase` is subtracted from
-    phi, so that the first wall node is at 0. Attributes are numbers or torch tensors.
+    Joukowski's map z = centre + quarter (zeta + 1/zeta) comes first; `quarter` is a quarter of the vector (a
+    complex number) along a slit in the body, and `centre` its middle. Then the maps `corners` straighten
+    corners. `pole` is the centroid of the wall after all these maps. `phase` is subtracted from phi, so that
+    the first wall node is at 0. Attributes are numbers or torch tensors.
     """
 
     centre: Any

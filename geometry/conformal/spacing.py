@@ -41,7 +41,7 @@ def conformal_knots(
     ----------
     marks : (m,) ascending arc lengths in (0, length) at which there must be nodes.
     at : (m,) indices of the nodes at `marks`; if None, they are multiples of one of the `steps`.
-    steps : descending; the first is used that is at most the cells before the first or after the last mark.
+    steps : descending; the first is used that does not exceed the number of cells from node 0 to any mark.
 
     Raises InputError: the conformal angle does not increase along the curve; no convergence.
     """

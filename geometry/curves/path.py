@@ -127,7 +127,7 @@ class Bend:
 class PiecedPath:
     """A path of `pieces` joined without kinks, from the point `start` (3,) in a `direction` (3,).
 
-    The direction `towards` of an arc is made perpendicular to the path where the arc begins. Raises
+    The direction `towards` in which an arc bends is made perpendicular to the path where it begins. Raises
     InputError: no piece; a length or radius that is not positive; a `towards` parallel to the path.
     """
 

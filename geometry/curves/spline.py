@@ -105,9 +105,9 @@ def open_slopes(
     """Return the slopes (intervals, d) at the start and at the end of each interval of an open curve.
 
     A spline joins each of the `stops` (indices of points, with the first and the last) to the next. `chord`
-    (intervals, d) are the vectors between points, `h` (intervals,) their lengths. A spline starts with the
-    slope in ``held[0]`` (intervals, d) and ends with that in ``held[1]``. Where this is not finite, its first
-    or last interval is a parabola.
+    (intervals, d) are the vectors between points, `h` (intervals,) their lengths. `held` (2, intervals, d)
+    fixes slopes: ``held[0, k]`` at the start of the spline that begins with interval k, ``held[1, k]`` at the
+    end of one that ends with it. If a slope is not finite or not given, the interval is a parabola.
     """
     delta = chord / h[:, None]
     doubled = np.zeros(len(h) + 1, dtype=np.intp)
@@ -160,8 +160,7 @@ def limited(
     """Return the slopes `start` and `stop` (intervals, 2) of each interval, limited to avoid overshoots.
 
     Tangents stay near the directions of the two chords that meet at a point. At `corners` (indices of
-    points), the curve has one tangent before and one after the point. A closed curve does not repeat its
-    first point.
+    points), the curve has two tangents. A closed curve does not repeat its first point.
     """
     n = len(points)
     chord = rolled(points, -1) - points  # the last of an open curve is not used

@@ -115,10 +115,9 @@ class Domain:
 
     @cached_property
     def layered_loops(self) -> range:
-        """Indices of the loops that get layers if no wall is named: the holes.
+        """Indices of the loops that get layers if no wall is named: holes or, in a channel, the outer loop.
 
-        In a domain without holes, it is the outer loop if the name of a part of it, such as inlet, shows that
-        this part is no wall; its other parts are then taken as walls.
+        A channel has no holes or periodic sides, and a part named as no wall (inlet); others are walls.
         """
         alone = len(self.loops) == 1 and not self.periodic
         channel = alone and not all(map(may_be_wall, self.loops[0].names))

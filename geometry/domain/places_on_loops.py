@@ -22,7 +22,7 @@ def place_at(loop: Loop, arc: Floats) -> Floats:
 
 
 def arc_at(loop: Loop, place: Floats) -> Floats:
-    """Return the arc lengths (n,), in [0, length), at places (n,) of a loop (see `place_at`)."""
+    """Return arc lengths (n,) on a loop; `place` (n,) counts its corners, with fractions (see `place_at`)."""
     if not loop.corners:
         return np.asarray(np.mod(place, 1.0) * loop.length)
     begins, lengths = loop.pieces
@@ -32,7 +32,7 @@ def arc_at(loop: Loop, place: Floats) -> Floats:
 
 
 def cells_at(loop: Loop, place: Floats) -> Indices:
-    """Return how many cells should meet at places (n,) of a loop; 0, for any number, except at corners."""
+    """Return how many cells should meet at each `place` (n,) of a loop (see `place_at`); 0 if no corner."""
     number = np.floor(place).astype(np.intp)
     if not loop.corners:
         return np.zeros(len(place), dtype=np.intp)

@@ -73,7 +73,7 @@ def polyline(corners: Corners, n: int, like: Corners | None = None) -> Floats:
 
 
 def arch(height: float, ni: int, nj: int) -> Boundary:
-    """Case 1: return a unit square with its top replaced by y = 1 + h sin(pi x); steps of x are equal."""
+    """Return case 1 of the paper: a unit square whose top is y = 1 + `height` sin(pi x)."""
     x = np.linspace(0.0, 1.0, ni)
     top = np.stack([x, 1.0 + height * sin(np.pi * x)], axis=1)
     top[-1] = 1.0, 1.0
@@ -81,9 +81,9 @@ def arch(height: float, ni: int, nj: int) -> Boundary:
 
 
 def hexagon(angle: float, ni: int, nj: int) -> Boundary:
-    """Case 2: return a unit square whose top and bottom have a kink of the interior angle `angle` (degrees).
+    """Return case 2 of the paper: a unit square whose top and bottom have a kink.
 
-    The kinks are at (1/2, 1 + h) and (1/2, -h) with h = 1/(2 tan(angle/2)).
+    The kinks, of interior angle `angle` (degrees), are at (1/2, 1 + h) and (1/2, -h), h = 1/(2 tan(angle/2)).
     """
     h = 0.5 / math.tan(math.radians(0.5 * angle))
     south = polyline([(0.0, 0.0), (0.5, -h), (1.0, 0.0)], ni)
@@ -92,11 +92,11 @@ def hexagon(angle: float, ni: int, nj: int) -> Boundary:
 
 
 def wrench(opening: float, ni: int, nj: int) -> Boundary:
-    """Case 3: return a unit square with a notch of width `opening` in its top, like the jaw of a wrench.
+    """Return case 3 of the paper: a unit square with a notch in its top, like the jaw of a wrench.
 
-    The notch is centred at x = 1/2 and reaches from y = 1 down to 0.6. On both sides, at a distance of 0.05
-    from it, the top rises to a tip at y = 1.15. Elliptic grids fold at the lower corners of the notch. The
-    indices of nodes at corners do not depend on `opening`.
+    The notch, `opening` wide, is centred at x = 1/2 and reaches from y = 1 down to 0.6. The top has a tip at
+    y = 1.15 on each side of the notch, 0.05 away from it. Elliptic grids fold at the lower corners of the
+    notch. The indices of nodes at corners do not depend on `opening`.
     """
     south, north = polyline([(0.0, 0.0), (1.0, 0.0)], ni), polyline(_jaw(opening), ni, like=_jaw(0.3))
     return _upright(south, north, nj, f"wrench-{opening:.6g}")
@@ -110,7 +110,7 @@ def _jaw(opening: float) -> Corners:
 
 
 def semicircle(centre: float, ni: int, nj: int) -> Boundary:
-    """Case 4: return a channel, 2 by 1, with a semicircle of radius 0.2 on its floor at x = `centre`."""
+    """Return case 4 of the paper: a 2 by 1 channel, with a semicircle on its floor at x = `centre`."""
     radius, length = 0.2, 2.0
     first, arc = centre - radius, np.pi * radius
     whole = length - 2 * radius + arc
@@ -125,7 +125,7 @@ def semicircle(centre: float, ni: int, nj: int) -> Boundary:
 
 
 def airfoil(ratio: float, ni: int, nj: int) -> Boundary:
-    """Case 5: return a closed NACA 00xx airfoil, `ratio` chords thick, in a circle of radius 15 chords."""
+    """Return case 5 of the paper: a closed NACA 00xx airfoil, `ratio` thick, in a circle of radius 15."""
     # imported here since the other families do not need them
     from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
     from meshonet.geometry.shapes.airfoil.naca import POINTS, thickness
@@ -139,7 +139,7 @@ def airfoil(ratio: float, ni: int, nj: int) -> Boundary:
 
 
 def hole(height: float, ni: int, nj: int) -> Boundary:
-    """Case 6: return a square of side 2 around (0, 0), with a hole of radius 0.35 around (0, `height`).
+    """Return case 6 of the paper: a square of side 2 at (0, 0) with a hole of radius 0.35 at (0, `height`).
 
     Nodes run clockwise from the rightmost point of the hole.
     """

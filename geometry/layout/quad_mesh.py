@@ -29,7 +29,7 @@ class Places:
 
     @classmethod
     def inside(cls, count: int) -> Places:
-        """Return places for `count` interior nodes: no loop, arc length 0, no corner, no partner."""
+        """Return the entries for `count` inner nodes: on no loop, no corners, without periodic partners."""
         none = np.full(count, -1, dtype=np.intp)
         return cls(none, np.zeros(count), np.zeros(count, dtype=np.intp), none.copy())
 
@@ -44,7 +44,7 @@ class Places:
         return np.asarray(on[np.argsort(self.arc[on], kind="stable")])
 
     def take(self, nodes: Indices) -> Places:
-        """Return the entries of the nodes with indices `nodes`, but with no periodic partner (-1)."""
+        """Return the entries of the nodes with indices `nodes`, with all `partner` set to -1 (none)."""
         cleared = np.full(len(nodes), -1, dtype=np.intp)
         return Places(self.loop[nodes], self.arc[nodes], self.cells[nodes], cleared)
 
@@ -120,7 +120,7 @@ class QuadMesh:
 
     @cached_property
     def irregular(self) -> Bools:
-        """Whether each node (n,) is irregular: not of 4 quads inside, or not of 2 quads on the boundary."""
+        """Whether each node (n,) is irregular: inside if not 4 quads meet at it, on the boundary if not 2."""
         return self.valence != np.where(self.wall_nodes, 2, 4)
 
     @cached_property
@@ -151,7 +151,7 @@ class QuadMesh:
         return np.asarray(known[off.argmin(axis=1)])
 
     def beside_partners(self, nodes: Floats) -> Floats:
-        """Return `nodes` (n, 2); each node with a periodic partner is the partner, moved by the period."""
+        """Return `nodes` (n, 2); each with a periodic partner is put exactly one period from the partner."""
         images = np.flatnonzero(self.places.partner >= 0)
         if images.size and self.domain.periodic:
             nodes = nodes.copy()

@@ -55,8 +55,8 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
 
     An exception is the round end of a thin body given by few points: it is no corner, even if it turns by up
     to 155 degrees. Near a round end, the thickness of the body grows like the square root of the distance,
-    near an edge linearly; this tells them apart (`growth_exponent`). A closed polygon of at most `few` points
-    is not a sampled curve; any of its points may be a corner.
+    near an edge linearly; this tells them apart (`growth_exponent`). In a closed polygon of at most `few`
+    points, which is no sampled curve, all turns of more than 40 degrees are corners, without exception.
     """
     angle = np.abs(turning(points, closed=closed))
     if not angle.max() > KINK:

@@ -38,9 +38,9 @@ def straight_intervals(points: Floats, corners: Indices) -> Bools:
     """Return which intervals (n,) of a closed polygon `points` (n, 2) are straight lines.
 
     A straight interval is at least `LONG` times as long as the one before or after it, with no corner between
-    the two (`corners` are indices of points). At each end that is no corner, the polygon turns by at most
-    `EXPLAINED` times the angle between tangent and chord, at this end, of the circle through it and the two
-    points beyond.
+    the two (`corners` are indices of points). Take, at an end that is no corner, the circular arc from it
+    through the next two points. The polygon turns at this end by at most `EXPLAINED` times as much as if the
+    arc were tangent to the interval.
     """
     turn, joined = turning(points, closed=True), np.ones(len(points), dtype=bool)
     turn[corners], joined[corners] = 0.0, False

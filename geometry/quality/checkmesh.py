@@ -23,7 +23,7 @@ from meshonet.geometry.quality.metrics import FACE_NAMES
 
 @dataclass(frozen=True)
 class FaceMeasures:
-    """Statistics of each measure of faces and the cell of its largest value; None for a measure of no face.
+    """For each measure of faces, its largest value, where, and its mean; None if no face has the measure.
 
     A cell is (i, j) in a single planar block, (block, i, j) in several, and (block, i, j, k) in volumes.
     """

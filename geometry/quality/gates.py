@@ -43,7 +43,7 @@ class Gate:
         return figure
 
     def broken(self, figures: "Figures", more: Mapping[str, Figure] = NO_MORE) -> str | None:
-        """Return a message if the grid fails by this gate, else None. Raises InputError: no such figure."""
+        """Return a message if the grid breaks the limit, else None. Raises InputError: unknown quantity."""
         figure = self.figure(figures, more)
         if not beyond(figure.value, self.compare, self.limit):
             return None
@@ -152,7 +152,7 @@ def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
 
 
 def parse_gates(texts: Iterable[str] | None, more: Sequence[str] = ()) -> tuple[Gate, ...]:
-    """Return the conditions `texts` as objects, each as `parse_gate` does; no texts for None."""
+    """Return the conditions `texts` as objects (see `parse_gate`). None stands for no conditions."""
     return tuple(parse_gate(text, more) for text in texts or ())
 
 

@@ -24,7 +24,7 @@ class Extreme:
     """Greatest value of a quantity, its mean and, if computed, its 99th percentile.
 
     `at` is the node or cell of the greatest value: (i, j), or in a multi-block grid (block, i, j[, k]).
-    `along` is the direction of the grid line there, one of `DIRECTIONS`.
+    `along` is the direction, one of `DIRECTIONS`, in which it was measured; None if it has no direction.
     """
 
     max: float

@@ -55,11 +55,11 @@ class Lattice:
 
 @dataclass(frozen=True)
 class SceneSheet:
-    """A layer of cells to draw, in a lattice: the nodes of a block, or of one layer of a large volume.
+    """A layer of cells to draw, which is a part of the `Lattice` number `lattice`.
 
-    It has the index `node` along the direction `axis`; if `axis` is None, it is the whole lattice. `ranges`
-    are its first and last nodes along the other directions. For a layer inside a large volume, `across` (i,
-    j or k) and `at` are its direction and its index in the block.
+    The sheet has the index `node` along the direction `axis` of the lattice; if `axis` is None, it is the
+    whole lattice. `ranges` are its first and last nodes along the other directions. A sheet inside a large
+    volume has the index `at` along direction `across` (i, j or k) of its block.
     """
 
     lattice: int

@@ -24,7 +24,7 @@ class QualityPage:
         self._numbers = itertools.count()
 
     def add(self, label: str, report: QualityReport) -> None:
-        """Add the report of the grid `label`. Raises InputError if the grid lacks the quantity of a gate."""
+        """Add the report of grid `label`. Raises InputError: the grid lacks a quantity that has a limit."""
         report = report.under(self._gates)
         good, angle = passed(report, self._gates), report.quality["max_angle"].max
         number = next(self._numbers)
