@@ -23,7 +23,7 @@ def lines_between(
     """Return nodes (n, cells + 1, 3) on n lines from the points `begin` (n, 3) to the points `end` (n, 3).
 
     Coordinates are s, theta, zeta: along, around and away from a body. `points` maps them to x, y, z. `sizes`
-    are the steps of s (n,) in first and in last cells. Between these, lengths in x, y, z change smoothly.
+    are steps of s (n,) in first and in last cells. Between these, cell lengths in x, y, z change smoothly.
     """
     lines, arcs, ends = _measured(points, begin, end, sizes)
     nodes = sampled(lines, arcs, smooth_arcs(arcs[:, -1], ends, cells))

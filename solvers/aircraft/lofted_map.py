@@ -74,11 +74,11 @@ class LoftedMap(BodyMap):
         return super().places(lowered)
 
     def around(self, places: Floats) -> Floats:
-        """Return |d(x, y, z) / d theta| (...) at `places` (..., 3), which are s, theta, zeta of `BodyMap`."""
+        """Return |d(x, y, z) / d theta| (...) at `places` (..., 3), coordinates s, theta, zeta."""
         return np.asarray(norms(self._around(places)))
 
     def steepness(self, places: Floats) -> Floats:
-        """Return angles (...) in radians from z (spanwise) to lines along theta at `places` (..., 3)."""
+        """Return angles (...) in radians from z to lines along theta at `places` (..., 3): s, theta, zeta."""
         around = np.abs(self._around(places))
         return np.asarray(arctan2(around[..., 1], around[..., 2]))
 

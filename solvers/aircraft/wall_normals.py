@@ -12,10 +12,7 @@ from meshonet.geometry.elementary import exp
 from meshonet.solvers.aircraft.wing_lines import WingLines
 
 _WAY = 0.6  # length over which a line is displaced, divided by its distance from the other wall
-
 _TURN = 0.5  # length that takes the place of this distance beyond a tip, in chords of the tip
-
-
 _OBLIQUE = 0.4  # largest cosine between the level and the mean direction of lines at the edge of a tip
 
 
@@ -44,7 +41,8 @@ def off_body(points: Floats, above: Floats, rings: Sequence[Indices], first: flo
 def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Floats:
     """Return `points` (k, p, 3) on p spanwise lines, moved so that cells leave a wing normal to its span.
 
-    `ring` (n, m) are indices of lines, n around the wing and m away from it. First cells are `first` high.
+    `ring` (n, m) are indices of lines: m away from the wing and n around it. The last of the n coincides with
+    the first if `closed`. First cells are `first` high.
     """
     lines = np.moveaxis(points[:, ring], 2, 0)  # (m, k, n, 3), from the wing outwards
     wall, away = lines[0], (lines[1] - lines[0]) / first

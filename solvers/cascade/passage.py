@@ -96,7 +96,7 @@ class Passage:
         return np.asarray(times(1j * np.pi, (complex_of(points) - self.centre)) / self.period)
 
     def of_zeta(self, zeta: Complexes) -> Floats:
-        """Return points (n, 2) from complex numbers (n,); the real axis is axial, iπ becomes the pitch."""
+        """Return points (n, 2) of complex `zeta` (n,), where the real axis is axial and the pitch is iπ."""
         return pairs_of(self.centre + times(zeta, self.period) / (1j * np.pi))
 
     def domain(self, inlet: float, outlet: float) -> Domain:

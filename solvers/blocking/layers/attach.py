@@ -19,7 +19,7 @@ class Rows:
     Parameters
     ----------
     loop : index of the loop at which the lines begin; the loop at which they end has the same index.
-    nodes : (k, m, 2) nodes of k lines, in the order of their first nodes along the layout's loop.
+    nodes : (k, m, 2) nodes of k lines, in the order in which they begin along the loop.
     arcs : (k,) arc lengths of the ends of the lines along the loop at which they end.
     layers : whether the new cells are layers at a wall, which no later optimisation moves.
     """

@@ -53,7 +53,7 @@ class RowSizes:
 
     @classmethod
     def of(cls, domain: Domain, number: int, stretches: Sequence[Stretch], settings: LayerSettings) -> Self:
-        """Return cell sizes along loop `number` with layers on its parts `stretches`; if empty, on all of it."""
+        """Return cell sizes along loop `number`, which has layers on `stretches` or, if empty, all around."""
         loop = domain.loops[number]
         arcs, length = sizes_by_bend(loop, loop.length / COLUMNS, TURN)
         gap = _gaps(domain, number, arcs)
@@ -70,7 +70,7 @@ class RowSizes:
     def thickness(self, scale: float, settings: LayerSettings) -> Floats:
         """Return the total thickness (n,) of all layers at each point of the wall.
 
-        Cells grow until they are square, or less in narrow gaps. `scale` multiplies lengths along the wall.
+        Cells grow until square, or less in narrow gaps. `scale` multiplies cell lengths along the wall.
         """
         last = scale * self.length * settings.growth
         full = np.maximum((last - self.first) / (settings.growth - 1.0), THINNEST * self.first)
@@ -83,7 +83,7 @@ class RowSizes:
         return np.interp(arcs, self.arcs, self.thickness(scale, settings), period=self.loop.length)
 
     def thickness_behind(self, away: Floats, scale: float, settings: LayerSettings) -> Floats:
-        """Return the thickness (k,) of layers `away` (k,) down the wake; `scale` multiplies cell lengths."""
+        """Return thicknesses (k,) of layers `away` (k,) behind the edge; `scale` multiplies cell lengths."""
         edge = self.thickness_at(self.loop.corner_arcs[:1], scale, settings)
         return edge + SPREAD * away
 

@@ -28,7 +28,7 @@ def wrong_count(mesh: QuadMesh) -> Bools:
 
 
 def loops_to_pad(mesh: QuadMesh) -> list[int]:
-    """Return indices of boundary loops without corners where some node has more or fewer than two quads."""
+    """Return indices of loops that have no corners and have a node with more or fewer than two quads."""
     wrong = distinct(mesh.places.loop[wrong_count(mesh)])
     return [int(loop) for loop in wrong if loop >= 0 and not mesh.domain.loops[loop].corners]
 

@@ -40,11 +40,11 @@ class Trails:
         return float(self.length[self.first[trail + 1] + trail])
 
     def at_vertex(self, vertex: int) -> tuple[int, float]:
-        """Return the index of the boundary line through a vertex, and its length in u, v to the vertex."""
+        """Return a boundary line (index), and its length in u, v from its start to a vertex on it."""
         return self._on_piece(self.vertex == vertex, 0.0)
 
     def at_edge(self, face: int, edge: int, part: float) -> tuple[int, float]:
-        """Return the index of the boundary line at an edge, and its length in u, v to `part` of the edge."""
+        """Return a boundary line (index), and its length in u, v from the start to `part` of an edge."""
         return self._on_piece((self.face == face) & (self.edge == edge), part)
 
     def _on_piece(self, which: Bools, part: float) -> tuple[int, float]:
