@@ -11,12 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.formats.figure.blocks import (
-    lines_of_blocks,
-    mark_vertices,
-    outline_blocks,
-    shown_counts,
-)
+from meshonet.formats.figure.blocks import lines_of_blocks, mark_vertices, outline_blocks, shown_counts
 from meshonet.formats.figure.layers import (
     DOTS,
     INK,

@@ -126,10 +126,7 @@ class PartFiles:
         """
         count = 0
         name: Kind = "meshonet-grid" if kind == "grids" else "meshonet-boundary"
-        with (
-            whole_file(str(self.path(number)), make_folder=True) as part,
-            writing(part, name) as writer,
-        ):
+        with whole_file(str(self.path(number)), make_folder=True) as part, writing(part, name) as writer:
             for sample in samples:
                 writer.append(sample)
                 count += 1

@@ -88,10 +88,7 @@ def _naca(rng: np.random.Generator) -> Floats:
     camber = m * np.where(front, (2 * p * x - x * x) / p**2, (1 - 2 * p + 2 * p * x - x * x) / (1 - p) ** 2)
     slope = arctan(2 * m * (p - x) / np.where(front, p**2, (1 - p) ** 2))
     return _joined(
-        x - half * sin(slope),
-        camber + half * cos(slope),
-        x + half * sin(slope),
-        camber - half * cos(slope),
+        x - half * sin(slope), camber + half * cos(slope), x + half * sin(slope), camber - half * cos(slope)
     )
 
 

@@ -25,11 +25,11 @@ from meshonet.kernels import _native
 
 @dataclass(frozen=True)
 class Lines:
-    """Largest growth and bend (turning angle in degrees) of grid lines, and where; None without nodes.
+    """Growth ratios and turning angles (bends, in degrees) of grid lines: greatest values, means and places.
 
     `growth` is along each direction of the blocks. Fields that end in ``_inside`` are at nodes inside blocks,
     fields that end in ``_across`` at nodes on sides between blocks. `leaving` is the growth along all lines
-    that start at walls, continued from block to block. `by_wall` has this growth for each wall.
+    that start at walls, continued from block to block. `by_wall` has it for each wall. None: no such nodes.
     """
 
     growth: Growth
@@ -53,9 +53,9 @@ class BlockLines:
 
 
 def lines(grid: Grid, nodes: Vertices, *, all_measures: bool = True) -> Lines:
-    """Return growth and turning of the grid lines of planar blocks or surface patches.
+    """Return growth ratios and turning angles on the grid lines of planar blocks or surface patches.
 
-    `nodes` are the vertices of the grid. Without `all_measures`, turning and percentiles are left out.
+    `nodes` are the vertices of the grid. Without `all_measures`, turning angles and percentiles are None.
     """
     measures = (ratios, bends) if all_measures else (ratios,)
     parts = [*_inside(grid, measures), *_across(grid, nodes, measures)]
@@ -101,10 +101,10 @@ def _of(tallies: Iterable[Tally], *, kept: bool) -> Extreme | None:
 def part_of_values(
     place: tuple[int, ...], axis: int, inside: bool, values: Iterable[Floats], *, kept: bool = True
 ) -> BlockLines:
-    """Return statistics of `values` at an array of nodes: growth ratios and, if given, turning angles.
+    """Return statistics of growth ratios, and of turning angles if they are given, at an array of nodes.
 
-    Each of `values` is (m, n[, l]), for grid lines along `axis`. The first node is `place`: block, i, j[, k].
-    `inside`: nodes are inside the block, not on a side. `kept`: statistics include percentiles.
+    `values` yields the ratios (m, n[, l]) on grid lines along `axis`, then the angles. `place` is the first
+    node: block, i, j[, k]. `inside`: nodes are inside the block, not on a side. `kept`: with percentiles.
     """
     tallies = Tally(kept=kept), Tally(kept=kept)
     for tally, each in zip(tallies, values, strict=False):

@@ -13,9 +13,9 @@ Pairing: TypeAlias = Literal["auto", "name", "order"]
 class GridMatcher:
     """Finds, for each grid, the grid of a reference set with which it is compared.
 
-    Pairing is by ``name`` or by ``order``. With ``auto``, a single reference serves all grids. Several
-    references are paired by name if the first two references have different names, and a reference has the
-    name of the first grid; else by order. References are read only as far as needed.
+    Pairing is by ``name`` or by ``order``. With ``auto``, a single reference serves all grids. Several are
+    paired by name if the first two differ in name and one of all has the name of the first grid, otherwise by
+    order. `grids` yields the references, which are read only as far as needed.
     """
 
     def __init__(self, grids: Iterator[Grid], pairing: Pairing = "auto") -> None:

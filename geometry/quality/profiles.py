@@ -28,7 +28,7 @@ class Limit:
 
 @dataclass(frozen=True)
 class Check:
-    """A figure (named value) of a profile, and its limits."""
+    """The name of a measure of grid quality, such as ``max_angle``, and the limits on its value."""
 
     figure: str
     limits: tuple[Limit, ...]
@@ -73,7 +73,7 @@ class CheckResult:
         return max(broken, key=lambda limit: limit.level == "fail", default=None)
 
     def under(self, gates: Sequence[Gate]) -> "CheckResult":
-        """Return the result with the user's limits on its value, if `gates` has any, in place of its own."""
+        """Return the result, judged by the user's limits if `gates` has any on the same value."""
         compare = self.check.limits[0].compare
         own = [gate for gate in gates if gate.replaces(self.check.figure, compare)]
         limits = tuple(Limit("fail", gate.compare, gate.limit) for gate in own)

@@ -54,7 +54,7 @@ class QualityReport:
 
     For each metric, such as ``report.quality["max_angle"]``, there are ``min``, ``mean``, ``max``, ``p01``,
     ``p99`` and ``worst``, the worst cell. ``report.quality.folded`` is the number of folded cells.
-    ``report.figures.wall_rows`` has heights and angles of first cells, ``report.figures.growth`` growth
+    ``report.figures.wall_rows`` has heights and angles of first cells. ``report.figures.growth`` has growth
     ratios. ``report.profile.passed`` is the verdict of the profiles. ``report.as_dict()`` has all that
     ``meshonet quality --json`` prints.
 
@@ -117,10 +117,10 @@ class QualityReport:
         return replace(self, profile=self.profile.under(_parsed(gates))) if self.profile else self
 
     def broken(self, gates: Gates = ()) -> list[str]:
-        """Return a line for each limit by which the grid fails, of `gates` and of the quality profile.
+        """Return a message for each limit in `gates` or in the quality profile by which the grid fails.
 
         `gates` is one text or several, such as ``max_angle>170`` or ``scaled_jacobian.p01<0.2``: conditions
-        that must not hold. A line gives the value, its place and the limit.
+        that must not hold. A message gives the value, its place and the limit.
 
         Raises InputError: a text that is not a gate; a metric that this grid does not have.
         """
@@ -227,7 +227,7 @@ def quality_dict(quality: Quality) -> dict[str, Any]:
 
 
 def profile_dict(profile: ProfileReport) -> dict[str, Any]:
-    """Return the results of a grid in profiles (sets of limits) as a dict that JSON can hold."""
+    """Return the results of checking a grid by quality profiles (sets of limits), as a dict for JSON."""
     checks = [_check(result) for result in profile.results]
     return {"name": profile.name, "passed": profile.passed, "checks": checks}
 

@@ -147,7 +147,10 @@ class BladeSurface:
         return np.asarray(turned - mean - away * self.pitch)
 
     def lines(self, u: Floats) -> CubicTable:
-        """Return splines of s, theta, h (see `Channel`) along the span, at places `u` (m,) on the blade."""
+        """Return m splines along the span: s, theta and h at places `u` (m,) around the blade.
+
+        u is 0 at the leading edge and 0.5 at the trailing edge. s is 0 at the inlet and 1 at the outlet.
+        """
         values = np.stack([profile.at(u) for profile in self.profiles])
         values[..., 1] += self._turns[:, None]
         return CubicTable(values, self.knots)
@@ -160,9 +163,10 @@ class BladeSurface:
         return self.crossings(self.lines(u.ravel()), h, len(h) if u.ndim == 1 else 1)
 
     def crossings(self, lines: CubicTable, h: Floats, levels: int = 1) -> Floats:
-        """Return points s, theta (..., 2) of m splines along the span, at heights `h` (...).
+        """Return points s, theta (..., 2) of m splines along the span of the blade, at heights `h` (...).
 
-        `lines` are the splines, from the method `lines`; `h` is reshaped to (levels, m). See `Channel` for s.
+        `lines` are the splines, from the method `lines`. `h`, 0 at the hub and 1 at the casing, has `levels`
+        rows of m values, or with one level any shape of m values. s is 0 at the inlet and 1 at the outlet.
         """
         out = np.empty((*h.shape, 2))
         spline_crossings(

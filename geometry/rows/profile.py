@@ -73,7 +73,7 @@ class BladeProfile:
     def cornered(self, counts: Sequence[int]) -> Self:
         """Return the profile with `counts` (0, 1 or 2) corners at the leading and at the trailing edge.
 
-        Corners are the points with the largest turns near an edge. A single corner becomes the edge itself.
+        Corners are the points with the largest turns near an edge. An edge with one corner is moved to it.
         """
         edges, curve = (self.leading, self.trailing), self.curve
         bend = np.abs(turning(curve.points, closed=True))
@@ -203,13 +203,17 @@ class BladeProfile:
         return np.asarray(np.mod(self.leading + np.interp(u, *self._stops), self.curve.length))
 
     def corner_places(self) -> Floats:
-        """Return positions u (c,) of corners around the blade, -0.25 to 0.75; the leading edge is at 0."""
+        """Return places u (c,) of corners around the profile, -0.25 to 0.75: 0 leading, 0.5 trailing edge."""
         u, way = self._stops
         at = np.interp(np.mod(self.curve.corners - self.leading, self.curve.length), way, u)
         return np.sort(wrapped(at, -0.25))
 
     def at(self, u: Floats) -> Floats:
-        """Return coordinates s, theta, h (n, 3) in the channel, at `u` (n,), from 0 to 1 around the blade."""
+        """Return coordinates s, theta, h (n, 3) at places `u` (n,) around the profile.
+
+        u is 0 at the leading edge and 0.5 at the trailing edge. s is 0 at the inlet and 1 at the outlet,
+        theta the angle about the axis, and h 0 at the hub and 1 at the casing.
+        """
         arcs = self.arcs(u)
         m, theta = self.curve.at(arcs).T
         return np.stack([self._map.back(m), theta, self._heights(arcs)], axis=1)

@@ -46,7 +46,7 @@ class Row:
     Raises
     ------
     InputError
-        Curves without a channel; profiles in wrong order or outside the channel; gaps wider than the span.
+        Walls that form no channel; profiles in wrong order or outside the channel; gaps wider than the span.
 
     Examples
     --------

@@ -39,7 +39,7 @@ class Section:
         Centre of the twist, in chords from the leading edge.
     cant : float or 'panel', optional
         Angle in degrees by which the section is rotated about a line along x through its leading edge, from
-        z towards y. ``panel``: the dihedral of the wing on both sides of the section (see `Stack.cants`).
+        z towards y. ``panel``: the mean of the wing's dihedral angles on both sides of the section.
     nodes : int, optional
         Number of nodes from the previous section to this one, both ends included. None: the stack decides.
 
@@ -88,14 +88,14 @@ class Section:
 
     @property
     def placement(self) -> Floats:
-        """Array (6,): chord, twist in radians, x and y of the leading edge, centre of the twist in chords."""
+        """Array (6,): chord, twist in radians, leading edge x and y, centre of twist x and y (as `about`)."""
         return np.array([self.chord, math.radians(self.twist), self.x, self.y, *self.about])
 
 
 class Fade(NamedTuple):
-    """Weights with which the nodes of a section take part in its twist and its chord."""
+    """Transition of the nodes of a section from its own twist and chord to no twist and another chord."""
 
-    weight: Floats  # (n,) 1: as the section has it; 0: no twist, and scaled to the other chord
+    weight: Floats  # (n,) 1: twist and chord of the section; 0: no twist, and the other chord
     chord: float  # the other chord
 
 
@@ -110,10 +110,7 @@ def placed(unit: Floats, placement: Floats, fade: Fade | None = None) -> Floats:
     away_x, away_y = unit[..., 0] - about_x, unit[..., 1] - about_y
     c, s = cos(twist), sin(twist)
     return np.stack(
-        [
-            chord * (about_x + c * away_x + s * away_y) + x,
-            chord * (about_y + c * away_y - s * away_x) + y,
-        ],
+        [chord * (about_x + c * away_x + s * away_y) + x, chord * (about_y + c * away_y - s * away_x) + y],
         axis=-1,
     )
 

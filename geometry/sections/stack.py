@@ -102,7 +102,7 @@ class Stack:
 
     @property
     def span(self) -> int | None:
-        """Number of nodes along the span; None if it is not given for each part between two sections."""
+        """Number of nodes along the span; None if it is unknown between any two neighbouring sections."""
         cells = [each for each in self.panel_cells if each is not None]
         return sum(cells) + 1 if len(cells) == len(self.panel_cells) else None
 
@@ -140,7 +140,7 @@ class Stack:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on points and files of sections, and on a dihedral that makes the wing thinner than these."""
+        """Notes on the sections' points and files, and on a wing that is thinner than its sections."""
         notes = [note for section in self.sections for note in section.shape.notes]
         return tuple(dict.fromkeys([*notes, *filter(None, [self.steep])]))
 
@@ -165,7 +165,7 @@ class Stack:
 
     @property
     def steep(self) -> str:
-        """Note on the part of a wing that is most oblique to its sections; empty if up to 20 degrees."""
+        """Note on a wing whose span is more than 20 degrees off the normals of its sections; else empty."""
         if self.kind != "wing":
             return ""
         inclined = np.abs(self.dihedrals - np.stack([self.cants[:-1], self.cants[1:]])).min(axis=0)

@@ -24,9 +24,9 @@ class Annulus:
         self.body, self.outer, self.name = body, outer, name
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return the O boundary of the body with the given far field.
+        """Return the boundary of an O grid from the body to the outer curve.
 
-        Raises InputError: another topology; a far field; a setting that does not apply to the body.
+        Raises InputError: another topology, a far-field distance, or a setting that the body does not have.
         """
         if sampling.far_field is not None:
             problem = "a domain with a boundary of its own has no far field"

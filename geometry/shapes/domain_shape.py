@@ -64,7 +64,7 @@ class DomainShape:
         return replace(self, domain=replace(self.domain, notes=(*self.notes, *notes)))
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return the four edges of the domain as a single block. Raises InputError: it cannot be one."""
+        """Return the four edges of the domain's single block. Raises InputError if it needs several."""
         if self.domain.periodic:
             remedy = "make many blocks of it with infer or solve-pde"
             raise InputError("a domain with periodic sides is not one block", remedy)

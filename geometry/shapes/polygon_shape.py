@@ -67,7 +67,7 @@ def polygon_shape(
 
 
 def domain_or_body(shape: Outline | Airfoil) -> Shape:
-    """Return the domain inside an outline with corners, unless there are four; else `shape` itself."""
+    """Return the domain inside an outline that has corners and is not four-sided; else return `shape`."""
     if isinstance(shape, Airfoil) or shape.topology != "quad":
         return shape
     points = shape.curve.points

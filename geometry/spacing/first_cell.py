@@ -18,7 +18,7 @@ class FirstCell:
     Parameters
     ----------
     first_cell : float or mapping, optional
-        Height, in chords for a single block around a body. Or a mapping from names of walls to heights.
+        Height, or a mapping from names of walls to heights. The unit depends on the kind of request.
     y_plus : float or mapping, optional
         Height as y+, converted by the friction of a flat plate.
     reynolds : float, optional
@@ -108,8 +108,8 @@ class FirstCell:
     ) -> tuple[str, ...]:
         """Return a note on how the first-cell height follows from y+; an empty tuple without y+.
 
-        `unit` is the reference length of y+, unless the field `length` sets it; `where` describes it. The
-        note gives heights multiplied by `scale`, with `in_unit` as name of their unit.
+        `unit` is the reference length of y+, `where` a text such as ``on a chord of 2``. The field `length`,
+        if set, replaces both. The note gives heights multiplied by `scale`, and `in_unit` as their unit.
         """
         from meshonet.geometry.spacing.y_plus import height_note
 

@@ -56,7 +56,7 @@ class Sampling:
     wake_nodes : int, optional
         Number of nodes from the trailing edge to the end of the wake. None: set by cells at this edge.
     base_nodes : int, optional
-        Number of nodes on a blunt trailing edge with both corners; odd for an O grid. None: by its width.
+        Number of nodes across a blunt trailing edge, corners included; odd for an O grid. None: by its width.
     base : float, optional
         Thickness in chords to which thinner trailing edges of airfoils are opened.
     smooth : float, optional
@@ -126,7 +126,9 @@ class Sampling:
             raise InputError(problem, "give four point indices")
 
     def corner_steps(self, cells: int) -> tuple[int, ...]:
-        """Return numbers to try, largest first, as divisors of node indices of corners on a wall of `cells`.
+        """Return the steps to try, largest first, for the corners on a wall of `cells` cells.
+
+        Node indices of corners become multiples of the step. If `refined` is above 1, it is the only step.
 
         >>> Sampling().corner_steps(404), Sampling().corner_steps(398), Sampling(refined=8).corner_steps(400)
         ((4, 2, 1), (2, 1), (8,))

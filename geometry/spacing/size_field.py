@@ -39,10 +39,10 @@ def arcs_by_curvature(
 ) -> Floats:
     """Return arc lengths (cells + 1,) from one end of the trailing edge around the nose to the other.
 
-    The cell size h combines four sizes, 1/h⁴ = Σ 1/hₖ⁴. The first two start at the trailing and at the
-    leading edge and increase by `GROWTH`, a logarithm, times the distance. The third is the length on which
-    the curve turns by `TURN`. The fourth is a constant that gives the requested number of cells. If cells are
-    too few, first the growth is increased, then the size at the leading edge and the third, at last all.
+    The cell size h combines four sizes, 1/h⁴ = Σ 1/hₖ⁴. Two are the sizes at the trailing and at the leading
+    edge plus `GROWTH` (ln 1.1) times the distance from there. One is the length on which the curve turns by
+    `TURN`. One is a constant that gives the number of cells. If cells are too few, growth is increased, and
+    so are the size at the leading edge and the length of a turn.
 
     Parameters
     ----------

@@ -55,10 +55,10 @@ class _Edge(NamedTuple):
 
 
 def with_bases(patches: Sequence[Floats]) -> tuple[list[Floats], list[int], tuple[str, ...]]:
-    """Return `patches` (ni, nj, 3), and after them a patch (base) that closes each open trailing edge.
+    """Return `patches` (ni, nj, 3), followed by a patch (base) for each open trailing edge, which it closes.
 
-    Also return the index of the patch above each base, and notes. Raises InputError: a trailing edge with
-    different numbers of cells across its two ends.
+    Also return the index of a patch beside each base, and notes. Raises InputError: a trailing edge whose two
+    ends have different numbers of cells across its thickness.
     """
     nodes, lattices = merged(patches)
     sides = _open_sides(patches, nodes, lattices)

@@ -52,7 +52,10 @@ def check_manifold(nodes: Floats, lattices: tuple[Indices, ...], crowded: Indice
 
 
 def check_gaps(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> None:
-    """Raise InputError if two end nodes of a surface's open `edges` (k, 2) nearly coincide."""
+    """Raise InputError if two nodes on open edges of a surface nearly coincide: there is a gap.
+
+    `edges` (k, 2) are the nodes of open edges, `lattices` the node numbers (ni, nj) of each patch.
+    """
     if not len(edges):
         return
     length = np.sqrt(((nodes[edges[:, 0]] - nodes[edges[:, 1]]) ** 2).sum(axis=1))
@@ -73,7 +76,7 @@ def check_gaps(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> 
 
 
 def check_seams(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> None:
-    """Raise InputError if an end node of one of a surface's open `edges` (k, 2) lies inside another."""
+    """Raise InputError if a node of one of the open `edges` (k, 2) of a surface lies inside another edge."""
     ends = nodes[edges]
     along = ends[:, 1] - ends[:, 0]
     length = norms(along)

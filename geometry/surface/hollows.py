@@ -35,7 +35,10 @@ class Hollows:
         return self._at(int(self.angles.argmin())) if len(self.edges) else None
 
     def nearest(self, surface: Surface, numbers: Indices) -> tuple[float, int] | None:
-        """Return the angle (degrees) and a node of a concave edge near the nodes `numbers` (n,), or None."""
+        """Return the outer angle (degrees) at the concave edge nearest to some nodes, and a node of the edge.
+
+        `numbers` (n,) are these nodes. The result is None if the edge is more than 0.1 surface sizes away.
+        """
         if not len(self.edges):
             return None
         edges = surface.nodes[self.edges[:, 0]]

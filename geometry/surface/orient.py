@@ -69,7 +69,7 @@ def outward_sign(nodes: Floats, quads: Indices, flat: Sequence[int]) -> int | No
     """Return 1 if consistently oriented `quads` (m, 4) face outwards, -1 if inwards; None if undefined.
 
     Planes normal to the axes `flat` close the surface. The sign is undefined if the vector sum of areas shows
-    that no volume is enclosed. It is also undefined with planes of two axes, as at the corner of a box.
+    that no volume is enclosed, or if `flat` has more than one axis.
     """
     if len(flat) > 1:
         return None

@@ -53,9 +53,9 @@ def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
 
 
 def edges_in(nodes: Floats, sides: Indices, plane: Plane, slack: float) -> Indices:
-    """Return which open edges are within `slack` of a plane, without edges of quads that lie in it.
+    """Return a mask (k,) of open edges that are within `slack` of a plane, but whose quads are not.
 
-    `sides` (k, 4) is the result of `open_sides`. The result is a mask (k,).
+    `sides` (k, 4), from `open_sides`, are the corners of these quads; the ends of the open edge come first.
     """
     near = np.abs(nodes[sides, plane.axis] - plane.value) <= slack
     return np.asarray(near[:, :2].all(axis=1) & ~near[:, 2:].all(axis=1))

@@ -41,12 +41,12 @@ class PoleCore:
 
 
 def core_of(fan: Floats, quarters: int, most: int, *, even: bool = False) -> PoleCore:
-    """Return the core that replaces the first columns of a `fan`, a patch (m + 1, n, 3) with a pole at j = 0.
+    """Return a block (core), and rows of cells around it, that replace the cells around a pole of a patch.
 
-    The core and the rows around it are rounded, as marching requires. An `even` core has no kinks, at which
-    cell sizes would change by up to a factor of 2. `quarters` is the angle of the fan around the pole, in
-    right angles. If `quarters` is 4, the last line of the fan repeats the first, and m is even. At most
-    `most` columns are replaced.
+    `fan` (m + 1, n, 3) are the nodes of the patch; those with j = 0 are the pole. Cells up to j = `most` at
+    most are replaced. `quarters` is the angle of the patch around the pole, in right angles. If it is 4, the
+    nodes i = m repeat those of i = 0, and m is even. The core's outline is a rounded square. In an `even`
+    core lines have no kinks, at which cell sizes would change by up to a factor of 2.
     """
     m = len(fan) - 1
     steps = norms(np.diff(fan, axis=1)).mean(axis=0)

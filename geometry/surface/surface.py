@@ -77,12 +77,13 @@ class Surface:
 def surface_of(grid: Grid, *, poles: Literal["replace", "refuse"] = "replace") -> Surface:
     """Return the surface that the patches (ni, nj, 3) of a grid form together.
 
-    Poles (sides that are single points) are replaced by core patches unless `poles` is ``refuse``. Open
-    trailing edges are closed. Patches with the opposite orientation are reversed along i. Notes report these
-    changes. Normals point outwards if the surface is closed, or if planes of symmetry close it, all normal to
-    one axis. Otherwise most of the area keeps its orientation. Raises InputError, with the place: a block
-    that is not a patch; an edge of zero length or of three quads; sheets that touch only at a node; sides
-    that nearly match, or meet with different nodes; a trailing edge whose ends differ; no orientation.
+    Where a side is a single point (a pole), new patches replace the cells around it; if `poles` is
+    ``refuse``, a pole is an error. Open trailing edges are closed. Patches with the opposite orientation are
+    reversed along i. Notes report these changes. Normals point outwards if the surface is closed, or if
+    planes of symmetry close it, all normal to one axis. Otherwise most cells keep their orientation. Raises
+    InputError: a block that is not a patch; an edge of zero length or of three quads; parts that touch only
+    at a node; sides that nearly match, or meet with different nodes; a trailing edge whose ends differ; no
+    orientation.
     """
     if any(block.nodes.ndim != 3 or block.nodes.shape[-1] != 3 for block in grid.blocks):
         problem = "a surface is made of patches (ni, nj, 3), and a block of this grid is none"

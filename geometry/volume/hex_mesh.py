@@ -118,7 +118,7 @@ def exchange(
 
 
 def hex_mesh_of(grid: Grid) -> HexMesh:
-    """Return the mesh of a grid of volumes. Raises InputError: a block that is left-handed or no volume."""
+    """Return the mesh of a volume grid. Raises InputError: a left-handed or a two-dimensional block."""
     for number, block in enumerate(grid.blocks):
         if len(block.counts) != 3:
             sizes = " x ".join(map(str, block.counts))

@@ -19,15 +19,15 @@ class DrawnInputs:
         return map(self.draws.__getitem__, range(k - 1, len(self.draws), n))
 
     def count(self) -> int:
-        """Return the number of members in the shard."""
+        """Return the approximate number of shapes of this job."""
         return len(self.draws) // self.shard[1]
 
     def parts(self, size: int) -> Iterator[tuple[int, tuple[Draw, ...]]]:
-        """Yield number and members of the parts that belong to the shard; each part has `size` members."""
+        """Yield index and shapes of every n-th part from the k-th on; a part has `size` shapes."""
         k, n = self.shard
         for number in range(k - 1, -(-len(self.draws) // size), n):
             yield number, tuple(self.draws[number * size : (number + 1) * size])
 
     def more_than(self, count: int) -> bool:
-        """Return whether there are more than `count` members."""
+        """Return whether there are more than `count` shapes in all jobs together."""
         return len(self.draws) > count

@@ -19,7 +19,7 @@ class Keys:
         self._names = UniqueNames()
 
     def named(self, item: Item[Any], what: Any) -> Any:
-        """Return a grid or boundary with a unique name, and with its old name as title if it has none."""
+        """Return a grid or boundary with a unique name; the old name becomes its title if it has no title."""
         if not isinstance(what, Grid | Boundary):
             return what
         key = self._names.add(item.stem if _of_file(item) else what.name)

@@ -19,11 +19,8 @@ if TYPE_CHECKING:
     from meshonet.geometry.spacing.sampling import Sampling
     from meshonet_cli.batch.drawn import DrawnInputs
 
-_OFTEN = (
-    700,
-    10,
-    10,
-)  # new objects after which cycles, which may hold grids and figures, are searched among many members
+_OFTEN = 700, 10, 10
+"""New objects after which cycles, which may hold grids and figures, are searched among many members."""
 
 
 def members_of(
@@ -49,7 +46,7 @@ def records(
 ) -> Iterator[Item[Any]]:  # fmt: skip
     """Yield the members of all inputs; for an unreadable member, the item contains the error.
 
-    `alone`: there is only one input; a shape drawn from a family then needs no number in messages.
+    `alone`: there is only one input. A shape of a parametric family is then named without a number.
     """
     count = 0
     for each in inputs:

@@ -53,12 +53,11 @@ def infer(
 ) -> int:
     """Make grids by the method that suits the kind of shape.
 
-    O grids are made by a conformal map, or with a first cell by marching from the wall. C grids are marched.
-    Four-sided grids are made by the variational method, or with a first cell by Winslow's equations. Other
-    planar domains are split into blocks. Volumes inside six faces are made by the variational method. With a
-    first cell, the volume outside a surface is marched. With --model, --polish, --device or --fallback, and
-    for bodies without a suitable conformal map, a neural operator makes the grid; the report then gives the
-    expected error.
+    O grids are made by a conformal map. C grids are marched. Four-sided grids, and volumes inside six faces,
+    are made by the variational method. Other planar domains are split into blocks. If a first-cell height is
+    given, O grids and the volume outside a surface are marched from the wall, and four-sided grids are made
+    by Winslow's equations. With --model, --polish, --device or --fallback, and for bodies without a suitable
+    conformal map, a neural operator makes the grid; the report then gives the expected error.
     """
     from meshonet_cli.tasks.grids import write_grids
 

@@ -50,8 +50,8 @@ def layout(
 ) -> int:
     """Split domains into blocks and write the block layout.
 
-    With a first cell, the layout contains only the blocks outside the layers. infer and solve-pde add blocks
-    for the layers.
+    If a first-cell height is given, the layout has only the blocks outside the boundary layers. The commands
+    infer and solve-pde add the blocks of the layers.
     """
     from meshonet_cli.tasks.layouts import write_layouts
 

@@ -52,9 +52,9 @@ def stack(
         "edges are opened to this height. [default: 0.005; 0.001 for wings from surface files]",
     ),
     cells: int | None = _sampling(
-        metavar="N", help="Approximate number of cells around a wing or blade (instead of --around, --span "
-        "or both), around an aircraft (instead of --around), or in each passage of a blade row. [default: "
-        "500000 in a blade row; else set by --around and --span]",
+        metavar="N", help="Approximate number of cells of the volume grid, or of each passage of a blade "
+        "row. Not for ducts. For a wing or blade, instead of --around, --span or both; for an aircraft, "
+        "instead of --around. [default: 500000 in a blade row; else set by --around and --span]",
     ),
     copies: int | None = _sampling(
         metavar="K", min=1, help="Number of adjacent passages of a blade row, up to the number of blades. "

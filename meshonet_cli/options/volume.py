@@ -37,7 +37,7 @@ def axis_of(text: str | None) -> "AxisLine | None":
 
 
 def copies_of(text: str | None) -> int | tuple[int, ...]:
-    """Return the number of copies, or a number for each period; 1 for None. Raises InputError: other text.
+    """Return the numbers of copies along a grid's periods; 1 for None. Raises InputError: other text.
 
     >>> copies_of("3x2"), copies_of("23")
     ((3, 2), 23)

@@ -25,7 +25,8 @@ EDGE_NODES = 1000
 def write_boundaries(batch: Batch, sampling: Sampling, sensors: int | None = None) -> int:
     """Place boundary nodes on the shapes of a batch, write the boundaries, and return the exit code.
 
-    `sensors` nodes are also stored, as input of neural operators. Raises InputError if the output cannot.
+    `sensors` nodes are also stored, as input of neural operators. Raises InputError if it is given for CAD
+    files, or for output that is not HDF5.
     """
     files = batch.files
     drawn = isinstance(batch.inputs, DrawnInputs)

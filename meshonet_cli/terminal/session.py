@@ -197,7 +197,7 @@ class Session:
             self._line = StageLine(self._draw, self._clear)
 
     def begin(self, name: str, count: int | None = None) -> None:
-        """Show the current member `name` of a batch of `count` members; stop the program after a signal."""
+        """Show that `name`, one of `count` members of a batch, begins; raise an exception after Ctrl-C."""
         check()
         self.members += 1
         if self._line and self.batch:

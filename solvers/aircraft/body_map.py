@@ -73,18 +73,18 @@ class BodyMap:
         return np.clip(_between(self._arcs, along, np.zeros_like(s))[:, 0], 0.0, self.body.length)
 
     def around(self, places: Floats) -> Floats:
-        """Return distances (...) from the body's axis at `places` (..., 3), coordinates s, theta, zeta."""
+        """Return distances (...) from the body's axis to `places` (..., 3): s, theta, zeta of `BodyMap`."""
         points = self.points(places)
         return np.hypot(points[..., 1] - self.body.y, points[..., 2])
 
     def steepness(self, places: Floats) -> Floats:
-        """Return angles (...) in radians from z (spanwise) to tangents around a body at `places` (..., 3)."""
+        """Return angles (...) in radians between z and lines of theta at `places` s, theta, zeta (..., 3)."""
         return np.minimum(places[..., 1], np.pi - places[..., 1])
 
     def places(self, points: Floats, near: Floats | None = None) -> Floats:
-        """Return the coordinates s, theta, zeta (..., 3) of `points` (..., 3), by Newton's method.
+        """Return the coordinates s, theta, zeta of `BodyMap` (..., 3) for `points` x, y, z (..., 3).
 
-        The iteration starts from `near` (..., 3), by default from tabulated nodes nearby.
+        Newton's method starts from coordinates `near` (..., 3), by default from those of tabulated nodes.
         """
         y, z = points[..., 1] - self.body.y, points[..., 2]
         theta = arctan2(z, -y)

@@ -66,13 +66,13 @@ class LevelPlan:
 def planned(
     space: BodyMap, holes: Sequence[Sequence[Sequence[Hole]]], first: float, growth: float
 ) -> LevelPlan:
-    """Return the numbers of cells of surfaces around a body that have holes where wings cross them.
+    """Return numbers of cells for grids on nested surfaces around a body, through which wings pass.
 
     Parameters
     ----------
     space : map around the body.
-    holes : sections of wings, ``holes[column][wing][surface]``: columns from nose to tail, each with a wing,
-        a fin or both, and surfaces from the body outwards.
+    holes : sections of wings in the surfaces, ``holes[column][wing][surface]``. A column is a wing, a fin, or
+        a wing with a fin above it. Columns are from nose to tail, surfaces from the body outwards.
     first, growth : height of first cells, and largest growth ratio.
     """
     plans, levels = zip(*(planned_column(each, first, growth) for each in holes), strict=True)
@@ -181,8 +181,10 @@ class BodyEnd:
     def of(cls, points: Points, sides: Sequence[Side]) -> Self:
         """Return the plan of the patches between the tip of nose or tail and the nearest wing.
 
-        `sides` has the nodes at which they end beside the wing, and cell lengths there, for each surface
-        around the body from the body on. s is measured from the tip. `points` maps nodes to x, y, z.
+        For each of the nested surfaces around the body, innermost first, `sides` has the nodes (n, 3) at
+        which the patches end beside the wing, and the lengths (n,) in s of the cells there. Nodes are s,
+        theta, zeta: along, around and away from the body, with s = 0 at the tip. `points` maps them to x, y,
+        z.
         """
         nodes, cells = sides[0]
         way, last = min((float(nodes[k, 0]), float(cells[k])) for k in (0, -1))
@@ -206,8 +208,8 @@ class BodyEnd:
     def patches(self, points: Points, side: Floats, last: Floats) -> tuple[Floats, Floats]:
         """Return two patches (ni, nj, 3): one that ends at the nodes `side` (n, 3), and one around the tip.
 
-        `last` (n,) are the lengths of cells at the nodes `side`. Nodes are s, theta, zeta: along, around and
-        away from the body, with s = 0 at the tip of nose or tail. `points` maps nodes to x, y, z.
+        `last` (n,) are the lengths in s of the cells that end at `side`. Nodes are s, theta, zeta: along,
+        around and away from the body, with s = 0 at the tip of nose or tail. `points` maps nodes to x, y, z.
         """
         begin, first = self._begin(side)
         lines = lines_between(points, begin, side, (first, last), self.cells)

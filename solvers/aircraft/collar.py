@@ -64,10 +64,11 @@ def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
 
 
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
-    """Return the nodes of a wing's section from which lines lead to the corners of the rectangle `box`.
+    """Return from which nodes of a wing's section lines lead to the corners of the rectangle `box`.
 
-    The first number is the distance in nodes from the middle of the trailing edge, the second the distance
-    from the nose. Both are at least `fewest`, and make cells on both sides of a corner similarly long.
+    For the two rear corners, the nodes are the first number of nodes away from the middle of the trailing
+    edge. For the front corners, they are the second number away from the nose. Both numbers are at least
+    `fewest`, and make cells on both sides of a corner similarly long. `root` (n, 2) is the section.
     """
     normals, half = _normals(root), (len(root) - 1) // 2
     tried = np.arange(fewest, half // 3 + 1)
@@ -88,7 +89,7 @@ def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
 
 
 def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]:
-    """Return the cell lengths on a rectangle's rear and front side; `corners` is from `corner_nodes`."""
+    """Return the cell lengths along the rear and front side of `box`; `corners` has half their cells."""
     edge, nose = corners
     return (box.high - box.low) / (2 * edge), (box.high - box.low) / (2 * nose)
 
@@ -136,14 +137,15 @@ def _shifted(places: Floats, box: Rectangle, towards: float) -> Floats:
 def collar(
     root: Floats, outer: Floats, rows: int, first: float, last: Floats, straight: float = 0.0
 ) -> tuple[Floats, float]:
-    """Return nodes (n, rows + 1, 2) between the closed loops `root` and `outer` (n, 2), and a sine.
+    """Return nodes (n, rows + 1, 2) of a grid between the closed loops `root` and `outer` (n, 2), and a sine.
 
-    Nodes are placed on the lines of a simpler grid; the sine is that of the smallest angle of this grid.
+    Nodes are placed on the lines of a preliminary grid. The sine is that of its smallest angle.
 
     Parameters
     ----------
     first, last : lengths of cells at the root, and (n,) at the outer loop.
-    straight : 0 for the lines of an elliptic grid, 1 for parabolas normal to the root, between: a mixture.
+    straight : lines of the preliminary grid. 0: of an elliptic grid; 1: parabolas normal to the root;
+        between: a mixture.
     """
     arcs, lines = _lines(root, outer, straight)
     wanted = _rows(arcs, rows, first, last)

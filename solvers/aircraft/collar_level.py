@@ -34,9 +34,9 @@ _SINE, _LINES = 0.15, 0.05  # smallest sines: in a collar, and between its lines
 
 @dataclass(frozen=True, eq=False)
 class Hole:
-    """The section of a wing in a surface around the body (called a level)."""
+    """The section of a wing in one of the nested surfaces around the body (such a surface is a level)."""
 
-    section: Floats  # (n, 2) s and theta of its nodes
+    section: Floats  # (n, 2) s (along the body) and theta (around it) of its nodes
     scale: Floats  # (2,) length in space of a unit of s, and of theta
     zeta: float  # mean zeta of the section and of the level around it
     within: Within  # limits of s and theta for the collar
@@ -50,12 +50,12 @@ class Hole:
 
     @property
     def plane(self) -> Floats:
-        """Nodes (n, 2) of the section: s and theta, scaled to lengths in the unit of x, y, z."""
+        """Nodes (n, 2) of the section: places along and around the body, in lengths of the space x, y, z."""
         return self.section * self.scale
 
     @property
     def bands(self) -> tuple[float, float]:
-        """Widths, around the body, of the cells below and above the collar (cells around the section)."""
+        """Widths, measured around the body, of the spaces below and above the grid at the wing's section."""
         bottom, top = (theta * float(self.scale[1]) for theta in (self.below, self.within[1][1]))
         if self.fin:
             top = self.box.high + self.box.low - bottom
@@ -80,7 +80,10 @@ class CollarPlan:
 
 
 def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
-    """Return the two distances, in nodes, of `corner_nodes`, averaged over the sections `holes` of a wing."""
+    """Return the two numbers of nodes of `corner_nodes` for a rectangle around each section of a wing.
+
+    They are averaged over the sections `holes`, and count from the trailing edge and from the nose.
+    """
     corners = [corner_nodes(hole.plane, hole.box, _CORNER) for hole in holes]
     edge, nose = (round(sum(each) / len(corners)) for each in zip(*corners, strict=True))
     return edge, nose
@@ -89,7 +92,7 @@ def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
 def planned_collar(
     holes: Sequence[Hole], corners: tuple[int, int], first: float, growth: float
 ) -> "tuple[CollarPlan, list[CollarLevel]]":
-    """Return numbers of cells for the collars (cells around sections) of a wing, and each section's collar.
+    """Return numbers of cells for the grids (collars) around a wing's sections, and these grids.
 
     `holes` are the sections of the wing from the root on. `corners` is a result of `planned_corners`. Numbers
     of cells are as small as growth permits.
@@ -128,7 +131,7 @@ class CollarLevel:
 
     @classmethod
     def of(cls, plan: CollarPlan, hole: Hole) -> "CollarLevel":
-        """Return the collar (cells) around a wing's section `hole`, with the numbers of cells in `plan`."""
+        """Return the grid around the wing's section `hole`, with numbers of cells from `plan`."""
         plane, box = hole.plane, hole.box
         edge, nose, half = plan.edge, plan.nose, (len(plane) - 1) // 2
         outer = outer_loop(plane, box, (edge, nose))
@@ -174,7 +177,7 @@ class CollarLevel:
 
     @cached_property
     def beside(self) -> tuple[float, float]:
-        """Lengths around the body of the first cells below and above the collar (cells around the wing)."""
+        """Lengths, measured around the body, of the first cells below and above the grid around the wing."""
         outer, half = self.ring[:, -1, 1], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
         corners = (half + nose, len(outer) - 1 - edge), (half - nose, edge)
@@ -203,7 +206,7 @@ class CollarLevel:
 
     @property
     def across(self) -> tuple[Floats, Floats]:
-        """Values of theta, ascending, of the collar's outermost nodes before and behind the wing."""
+        """Angles around the body, ascending, of the grid's outer nodes ahead of the wing, and behind it."""
         outer, half, rho = self.ring[:, -1, 1], (len(self.ring) - 1) // 2, float(self.hole.scale[1])
         edge, nose = self.plan.edge, self.plan.nose
         front = outer[half + nose : half - nose - 1 : -1] / rho
@@ -216,13 +219,13 @@ class CollarLevel:
 
     @property
     def long_sides(self) -> tuple[Floats, Floats]:
-        """Values of s, from back to front, of the collar's outermost nodes below and above the wing."""
+        """Positions s along the body, descending, of the grid's outer nodes below the wing, and above it."""
         s, half = self.ring[:, -1, 0] / self.hole.scale[0], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
         return s[half + nose : 2 * half - edge + 1][::-1], s[edge : half - nose + 1]
 
     def collar(self) -> Floats:
-        """Return nodes s, theta (n, rows + 1, 2) around the wing; only half of those around a fin."""
+        """Return nodes s, theta (n, rows + 1, 2) around the wing; around a fin, only the half theta <= pi."""
         ring = self.ring / self.hole.scale
         if not self.hole.fin:
             return ring

@@ -50,7 +50,7 @@ class ColumnPlan:
 
     @property
     def patches(self) -> int:
-        """Number of patches around the wing and the fin on each surface around the body."""
+        """Number of patches from bottom to top of the body, on each of the nested surfaces around it."""
         return 4 if len(self.collars) == 2 else 2 if self.fin else 3
 
     @property
@@ -91,7 +91,10 @@ class ColumnPlan:
 def planned_column(
     holes: Sequence[Sequence[Hole]], first: float, growth: float
 ) -> tuple[ColumnPlan, list[ColumnLevel]]:
-    """Return the plan of the patches around wing and fin, and the patches on each level (`ColumnLevel`)."""
+    """Return numbers of cells for patches at a wing and a fin, and the patches on each surface (level).
+
+    `holes` has the sections of a wing, of a fin, or of both in nested surfaces around the body.
+    """
     corners = planned_corners([hole for each in holes for hole in each])
     collars, levels = zip(*(planned_collar(each, corners, first, growth) for each in holes), strict=True)
     plan = ColumnPlan(collars, holes[-1][0].fin)
@@ -105,7 +108,10 @@ def planned_column(
 
 @dataclass(frozen=True, eq=False)
 class ColumnLevel:
-    """The patches from keel to crown around a wing, a fin or both, on one surface around the body."""
+    """Patches at a wing, a fin or both, from the bottom of a body (keel) to its top (crown).
+
+    They lie on one of the nested surfaces around the body. s is along, theta around, zeta away from the body.
+    """
 
     plan: ColumnPlan  # numbers of cells
     levels: tuple[CollarLevel, ...]  # cells around the wing, the fin, or both, the fin last
@@ -121,33 +127,36 @@ class ColumnLevel:
         return cls(plan, tuple(levels))
 
     def with_counts(self, plan: ColumnPlan) -> ColumnLevel:
-        """Return these patches with the numbers of cells that `plan` has above and below wing and fin."""
+        """Return the patches with numbers of cells from `plan`; grids around wing and fin stay unchanged."""
         levels = (replace(each, plan=counts) for each, counts in zip(self.levels, plan.collars, strict=True))
         return replace(self, plan=plan, levels=tuple(levels))
 
     def beside_fin(self, fin: ColumnLevel) -> ColumnLevel:
-        """Return these patches with a zeta at the crown halfway between their own and that of `fin`."""
+        """Return the patches with zeta at the top of the body changed to the mean of theirs and `fin`'s."""
         zeta = self.zeta
         return replace(self, crown=zeta + 0.5 * (fin.levels[-1].hole.zeta - zeta))
 
     def beside_wing(self, wing: ColumnLevel, side: Side) -> ColumnLevel:
-        """Return these patches of a fin; nodes below it are moved towards the `side` of those of `wing`."""
+        """Return these patches of a fin, nearer in theta and zeta to the patches of a `wing` next to them.
+
+        Theta changes below the fin, zeta at the keel. `side` is the edge of the wing's patches.
+        """
         own, others = self.low, side[0][: len(self.low), 1]
         keel = self.zeta + _FOLLOWING * (wing.zeta - self.zeta)
         return replace(self, below=_followed(own, others), keel=keel)
 
     @property
     def zeta(self) -> float:
-        """Coordinate zeta (0 on the body, 1 in the far field) of the wing's section, or of a lone fin's."""
+        """Coordinate zeta (0 on the body, 1 in the far field) of the wing; of the fin if there is no wing."""
         return self.levels[0].hole.zeta
 
     @property
     def low(self) -> Floats:
-        """Angles theta of the nodes from the keel (theta = 0) to the cells around the wing, or a lone fin."""
+        """Angles theta, from 0 (keel) upwards, of the nodes below the wing; without a wing, below the fin."""
         return self.levels[0].low_and_top[0] if self.below is None else self.below
 
     def above(self) -> tuple[float, tuple[float, float]]:
-        """Return the length of the gap between the cells around wing and fin, and of both end cells in it."""
+        """Return the distance between the grids of wing and fin, and its first and last cell's lengths."""
         wing, fin = self.levels
         low, high = self._gap
         rho = 0.5 * float(wing.hole.scale[1] + fin.hole.scale[1])
@@ -172,7 +181,7 @@ class ColumnLevel:
 
     @property
     def sides(self) -> tuple[Side, Side]:
-        """Nodes on the front edge (nearer to the nose) and on the back edge of the patches, keel to crown."""
+        """Nodes and cell lengths on the front and the back edge of all patches together, keel to crown."""
         return self._side(0), self._side(1)
 
     def _side(self, which: int) -> Side:
@@ -208,7 +217,7 @@ class ColumnLevel:
         return self.zeta if self.crown is None else self.crown
 
     def patches(self) -> list[Floats]:
-        """Return the nodes (ni, nj, 3) of patches around, above and below the wing, and around the fin."""
+        """Return nodes s, theta, zeta (ni, nj, 3) of patches: around, above, below a wing, around a fin."""
         below, above = self.levels[0].long_sides
         zeta = self.zeta
         patches = [_on(self.levels[0].collar(), zeta)]

@@ -19,15 +19,7 @@ from meshonet.geometry.elementary import log
 from meshonet.geometry.layout.layout import Layout
 from meshonet.kernels._native import even_line
 from meshonet.solvers.energy.quad_problem import smallest_jacobian
-from meshonet.solvers.layers.growth_limit import (
-    CHANGE,
-    EXCESS,
-    HALVINGS,
-    LINEAR,
-    MOST_WEIGHT,
-    NEARLY,
-    RISE,
-)
+from meshonet.solvers.layers.growth_limit import CHANGE, EXCESS, HALVINGS, LINEAR, MOST_WEIGHT, NEARLY, RISE
 from meshonet.solvers.least_squares import NormalEquations
 from meshonet.solvers.sparse import SparsePattern
 

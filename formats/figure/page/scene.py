@@ -10,14 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from meshonet.formats.figure.page.cells import (
-    LEVELS,
-    Scale,
-    corners_of,
-    histogram,
-    scale_of,
-    worst_places,
-)
+from meshonet.formats.figure.page.cells import LEVELS, Scale, corners_of, histogram, scale_of, worst_places
 from meshonet.formats.figure.page.packing import Packed, packed, rounding_step, shortest_edge
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid

@@ -100,7 +100,7 @@ class Airfoil:
 
     @property
     def curve(self) -> Curve:
-        """The curve through the points. Raises InputError, with the place: the surfaces cross."""
+        """The curve through the points. Raises InputError, which says where, if the two surfaces cross."""
         if self.crossing:
             raise self.crossing
         return self.points_curve

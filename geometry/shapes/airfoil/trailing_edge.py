@@ -37,10 +37,10 @@ _WEDGE_POINTS = 9  # on each side of a wedge
 
 
 def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
-    """Return a section with rounded corners of its base, and the arc length at which the rounding ends.
+    """Return a section with rounded corners at its blunt trailing edge (base), and half the rounded length.
 
-    The base is the blunt trailing edge. `curve` and the result are closed and begin in its middle. The second
-    and the last point of `curve` are the corners of the base.
+    `curve` and the result are closed and begin in the middle of the base. The second and the last point of
+    `curve` are its corners. The length is that from the middle to the end of the first rounded corner.
     """
     length, half = curve.length, float(curve.knots[1])
     across = min(_ACROSS * half, _CAP * chord)

@@ -36,7 +36,7 @@ def shared(
 ) -> Iterator[Pair]:  # fmt: skip
     """Yield each member of the batch `todo` with its result; `work` runs on the workers of `engine`.
 
-    Members keep the order of `todo`. A task has `size` members; for a `size` of 1, more if they are fast.
+    Members keep the order of `todo`. A worker gets `size` at a time. If `size` is 1, fast ones are grouped.
     """
     timed, grows, most = _Timed(work), size == 1, size
 

@@ -25,11 +25,7 @@ from meshonet.geometry.threads import MANY_VISITS, threads_for
 from meshonet.kernels._native import respace_lines, surface_march
 from meshonet.solvers.hyperbolic.volume.blocks import blocks_of, volume_grid
 from meshonet.solvers.hyperbolic.volume.graph import MarchGraph, march_graph
-from meshonet.solvers.hyperbolic.volume.limited_growth import (
-    growth_of_levels,
-    limit_growth,
-    slower_steps,
-)
+from meshonet.solvers.hyperbolic.volume.limited_growth import growth_of_levels, limit_growth, slower_steps
 from meshonet.solvers.hyperbolic.volume.settings import Smoothing, VolumeMarch, attempts_for
 from meshonet.solvers.hyperbolic.volume.symmetry import in_planes, symmetry_of
 from meshonet.solvers.solution import Solution, timed
