@@ -19,14 +19,13 @@ class SparsePattern:
     Parameters
     ----------
     size : number of rows, n.
-    rows, columns : (m,) position of each entry, on one side of the diagonal. Entries at one position are
-        added.
+    rows, columns : (m,) position of each entry, on one side of the diagonal; entries at one position add up.
     block : 1 if entries are numbers, 2 if they are matrices (2, 2).
 
     Attributes
     ----------
     arrays : the pattern as arrays for compiled code.
-    slot : (m,) number of each entry's position.
+    slot : (m,) index of each entry's position among the different positions.
     entries : number of different positions.
 
     >>> pattern = SparsePattern(2, np.array([0, 0, 1]), np.array([0, 1, 1]))
@@ -108,7 +107,7 @@ class Factor:
         return x.reshape(np.shape(right))
 
     def refine(self, matrix: SparseMatrix, right: Floats, steps: int) -> Floats:
-        """Return the solution of ``matrix x = right`` after `steps` refinements; `matrix` is close to A."""
+        """Return x with ``matrix x = right`` after `steps` corrections, by the factors of a close matrix."""
         x = self.solve(right)
         for _ in range(steps):
             x += self.solve(right - matrix.times(x))

@@ -80,5 +80,5 @@ def elliptic() -> Auto:
 
 
 def fewer_on_quads(method: Method) -> Auto:
-    """Return a method that uses `method`, on fewer nodes in large four-sided domains."""
+    """Return `method`, except that large four-sided grids are solved on fewer nodes and then interpolated."""
     return Auto(Fewer(method), method, method, method.name)

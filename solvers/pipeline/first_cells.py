@@ -81,7 +81,7 @@ def has_walls_on_sides(shape: Shape, request: GridRequest) -> bool:
 
     If the request leaves the number of blocks open, these walls must also be opposite each other, and the
     request must not refine. Raises InputError if no wall has a requested name, or if walls on the same side
-    of one block have different heights.
+    of one block have different first-cell heights.
     """
     heights = request.first_cell if request.y_plus is None else request.y_plus
     off = heights if isinstance(heights, Mapping) else dict.fromkeys(request.walls, 0.0)
@@ -103,7 +103,7 @@ def has_walls_on_sides(shape: Shape, request: GridRequest) -> bool:
 
 
 def names_of_sides(shape: Shape) -> list[list[str]]:
-    """Return the names along each of the four sides; [] if the shape gets several blocks by default."""
+    """Return the names of boundary parts on each side of a four-sided shape; [] for shapes of other kinds."""
     if isinstance(shape, Boundary):
         return [] if shape.around_body else [[p.name for p in shape.patches if p.side == s] for s in SIDES]
     from meshonet.geometry.shapes.domain_shape import DomainShape, convex_corners, four_sided

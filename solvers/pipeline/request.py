@@ -150,7 +150,7 @@ class Volume(Request):
 
     @property
     def of_surface(self) -> bool:
-        """Whether options require marching from a surface; flat patches of files are then surfaces."""
+        """Whether options require that a volume is marched from a surface, flat or not."""
         return self.method == "hyperbolic" and not (OF_SURFACE | {"far_field"}).isdisjoint(self.chosen)
 
 
@@ -202,7 +202,7 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
         Grid from which the solution starts.
     repair : bool, optional
         Whether a grid with folded cells is repaired, or made again by another method; otherwise it is an
-        error. None: True, except for algebraic methods and raw grids of networks.
+        error. None: True, except for algebraic methods, and neural networks with ``answer="raw"``.
     repair_margin : int, optional
         Width in cells of the region around folded cells in which the repair moves nodes.
     allow_invalid : bool, optional

@@ -45,7 +45,7 @@ class Result:
         ``grid`` (from boundary nodes to grid nodes), ``guard`` (test for folded cells and repair) and
         ``quality``.
     notes : tuple of str, optional
-        All notes for the user, also on boundary and solution; names of parameters are in braces.
+        Notes for the user, including those of boundary and solution; names of options are in braces.
     history : tuple of HistoryRow, optional
         Convergence history of the iteration, if the request asks for it.
     lines : Lines, optional

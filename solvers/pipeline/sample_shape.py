@@ -101,9 +101,9 @@ def _check_refined(ni: int, nj: int, halvings: int) -> None:
 def keeps_base(shape: Shape, request: GridRequest) -> TypeGuard[Airfoil]:
     """Return whether a request marches a C grid that keeps the blunt base (trailing edge) of an airfoil.
 
-    `te` ``exact`` keeps every base. ``auto`` with a first-cell height keeps a base of at least one first cell
-    in height, or `RESOLVED` of them if the base is at most `THIN_BASE` chords high. ``auto`` without one
-    keeps a base higher than `THIN_BASE` chords, unless an option such as `refine` excludes such grids.
+    `te` ``exact`` keeps every base. ``auto`` without a first-cell height keeps bases higher than `THIN_BASE`
+    chords, unless an option such as `refine` excludes such grids. ``auto`` with a first-cell height keeps
+    these bases if they are one first cell high or more, and lower ones from `RESOLVED` first cells on.
     """
     sampling = request.sampling
     if request.method not in MARCHING or sampling.te not in ("auto", "exact"):

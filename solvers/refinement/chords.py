@@ -73,7 +73,7 @@ class Chords:
 
     @cached_property
     def multiple(self) -> Indices:
-        """Divisors (chords,) that cell counts of sets of opposite edges must have in a symmetric layout."""
+        """For each set of opposite edges (chords,), a divisor that its cell count must have for symmetry."""
         multiple = np.ones(self.count, dtype=np.intp)
         for k, edge in enumerate(self.edges):
             own = sum(np.array_equal(distinct(to[edge]), distinct(edge)) for to in self.images)
@@ -129,7 +129,7 @@ class Chords:
         return int((along[:, 0] * along[:, 2]).sum())
 
     def along_loops(self, counts: Indices) -> Indices:
-        """Return the numbers of wall cells (loops,) on boundary loops, from cell `counts` (chords,)."""
+        """Return the cells (loops,) on boundary loops if opposite edges in set k have `counts`[k] cells."""
         mesh = self.layout.mesh
         along = np.zeros(len(mesh.domain.loops), dtype=np.intp)
         for edge in np.flatnonzero(self.wall):

@@ -25,7 +25,7 @@ class Near:
     square: Floats  # (p, m) squared cosine of the angle between the edge and the normal at this point
 
     def length(self, sizes: "SizeMetric") -> Floats:
-        """Return target lengths (m,) of edges in the metric `sizes`: the smallest at their nearest points."""
+        """Return target lengths (m,) of edges by `sizes`: the smallest that the nearest wall points want."""
         rise = sizes.grading * self.distance
         high = np.minimum(sizes.across[self.point] + rise, sizes.largest)
         wide = np.minimum(sizes.along[self.point] + rise, sizes.largest)
@@ -65,7 +65,7 @@ class SizeMetric:
         return self.near(places, directions).length(self)
 
     def near(self, places: Floats, directions: Floats) -> Near:
-        """Return the points of the metric nearest to edges, with distances, and angles to the normals there.
+        """Return, for each edge, the nearest wall points, their distances, and its angles to normals there.
 
         `places` (m, 2) are the midpoints of the edges, `directions` (m, 2) their directions.
         """

@@ -15,7 +15,7 @@ _FROM = -0.25  # least place: u = 0, the leading edge, is between others
 
 @dataclass(frozen=True, eq=False)
 class ChannelLines:
-    """Lines across the channel between blades, nearly normal to their layers, averaged over sections."""
+    """Lines from one blade to the next, nearly normal to the layers of both: the mean of several sections."""
 
     upper: Floats  # (n,) places u (see `SectionPlane`) on the upper side of a blade, from 0 to 0.5
     lower: Floats  # (n,) 1 - u of the opposite places, on the lower side of the next blade
@@ -36,10 +36,10 @@ class ChannelLines:
         return cls(upper, upper, squares)
 
     def links(self, u: Floats, start: Floats, pairs: Indices, weight: float) -> PlaceLinks:
-        """Return conditions that keep lines across the channel from leaning more than for nodes at `start`.
+        """Return linear conditions that keep lines across the channel from leaning more than at the start.
 
-        `u` and `start` (k,) are places of nodes, from 0 to 1 around a blade. Each line joins the two nodes
-        with indices `pairs` (p, 2). Its lean is the tangent of the angle between it and the normal of the
+        `u` and `start` (k,) are present and original places of nodes, from 0 to 1 around a blade. Lines join
+        nodes with indices `pairs` (p, 2). The lean of a line is the tangent of its angle to the normal of the
         blade's layers. The increase in lean is linearised at `u` and multiplied by `weight`.
         """
         one = u[pairs[:, 0]]
@@ -50,14 +50,17 @@ class ChannelLines:
         return PlaceLinks(pairs, factors, scale * aside - (factors * u[pairs]).sum(axis=1))
 
     def leaning(self, u: Floats, pairs: Indices) -> float:
-        """Return the mean square lean (see `links`) of lines between `pairs` (p, 2) of nodes at `u` (k,)."""
+        """Return the mean square lean (see `links`) of lines between nodes `pairs` (p, 2) at places `u`."""
         return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
     def weights(self, pairs: Floats) -> Floats:
-        """Return factors (p,) that turn squares of `aside` into squares of lean (see `links`)."""
+        """Return squared ratios (p,) of the lean of lines (see `links`) to the result of `aside`."""
         return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
 
     def aside(self, pairs: Floats) -> Floats:
-        """Return for pairs of places (p, 2), from 0 to 1, the place opposite the first, minus the second."""
+        """Return (p,) the place opposite the first end of each line, minus the place of its second end.
+
+        `pairs` (p, 2) are the places of both ends, from 0 to 1 around a blade.
+        """
         upper, lower = (wrapped(each, _FROM) for each in (pairs[:, 0], 1.0 - pairs[:, 1]))
         return np.asarray(lower - np.interp(upper, self.upper, self.lower))

@@ -20,10 +20,10 @@ _ROUNDS = 4
 
 @dataclass(frozen=True, eq=False)
 class GapEnds:
-    """Nodes that fill the outline of the blade at both ends of a gap between the blade and hub or casing."""
+    """Nodes inside the blade's outline on both surfaces that bound a gap: blade end, and hub or casing."""
 
     fill: GapFill  # numbering of the nodes; those of the outline come first
-    # low, high: (n, 2) s and theta at the lower and at the upper end
+    # low, high: (n, 2) s and theta on the lower and on the upper surface
     low: Floats
     high: Floats
 
@@ -38,13 +38,13 @@ class GapBlocks:
 
 
 def gap_ends(row: Row, places: SpanPlaces, zone: Zone, first: float, growth: float) -> GapEnds:
-    """Return the nodes inside the blade's outline at both ends of a gap (between blade and hub or casing).
+    """Return nodes inside the blade's outline on both surfaces of a gap: the blade's end, and hub or casing.
 
     Parameters
     ----------
     places : places around the blade at which its nodes lie.
     zone : the gap.
-    first, growth : height of the cells inside the outline, and largest ratio of neighbouring cells.
+    first, growth : height of cells at the outline, normal to it, and largest ratio of neighbouring cells.
 
     Raises NoValidGridError if cells stay folded.
     """
@@ -69,7 +69,7 @@ def gap_ends(row: Row, places: SpanPlaces, zone: Zone, first: float, growth: flo
 def gap_blocks(
     row: Row, ends: GapEnds, around: Indices, outline: Floats, zone: Zone, growth: float
 ) -> GapBlocks:
-    """Return the blocks in a gap between blade and hub or casing, from its nodes at both `ends` of the gap.
+    """Return the blocks in a gap between blade and hub or casing, from the nodes `ends` on these surfaces.
 
     `around` (k,) are the indices of the blade's nodes in a section, clockwise. `outline` (levels, k, 3) has
     s, theta, h of these nodes (along, around and across the channel) on each level along the span.

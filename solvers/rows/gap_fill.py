@@ -31,8 +31,7 @@ _BISECTIONS = 50
 _ROUND = 0.4  # of the width of an edge behind it, at which it ends
 _FEWER = 0.8
 FLAT, SMOOTH, MARGIN = 0.95, 1e-3, 0.93
-"""Weights w and beta of the functional, and the fraction of the limit of growth from which on growth counts.
-"""
+"""Weights w and beta of the functional; fraction of the limit of growth from which on growth counts."""
 STEEP, STEEPEST = 0.7, 6.0  # smallest and largest weight of the growth of cells
 UNEVEN = 3.3, 3.9
 """Logarithms of growth, over that of its limit, at which the weight begins to rise and is largest."""
@@ -78,8 +77,8 @@ def _counts(outline: Floats, lead: int, first: float, growth: float) -> tuple[in
 def filled_outline(outline: Floats, lead: int, first: float, growth: float) -> GapFill:
     """Return the five blocks inside a clockwise outline (k, 2), with outer cells about `first` high.
 
-    `lead` is the index of the node at the leading edge. Neighbouring cells grow by `growth` at most, also
-    from cells of height `first` outside. Raises NoValidGridError if cells are folded.
+    `lead` is the index of the node at the leading edge. `growth` limits the ratio of neighbouring cells, also
+    to cells outside the outline, which are `first` high. Raises NoValidGridError if cells are folded.
     """
     aside, rows = _counts(outline, lead, first, growth)
     sides = outline_sides(len(outline), lead, aside)

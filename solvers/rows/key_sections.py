@@ -1,7 +1,6 @@
 """Key sections of a row, with the same blocks and counts; each starts from its neighbour's nodes.
 
-All are optima of one functional, which limits the growth of cells along lines, and the middle one is made
-first.
+All are optima of one functional, which limits the growth of cells along lines. The middle one is first.
 """
 
 import math
@@ -26,12 +25,9 @@ from meshonet.solvers.rows.section_plane import SectionPlane
 from meshonet.solvers.rows.span_places import SpanPlaces
 
 FINE, FROM_NEIGHBOUR = 40, 25
-FLAT, SMOOTH = 0.95, 1e-3
-"""Weights w and β of the functional."""
-BEND = 0.3
-"""Fraction of the way to the outlet over which lines turn into the direction of the wake."""
-STEEP, MARGIN = 3.0, 0.93
-"""Weight of growth, and the fraction of the logarithm of its limit from which on it counts."""
+FLAT, SMOOTH = 0.95, 1e-3  # weights w and β of the functional
+BEND = 0.3  # fraction of the way to the outlet over which lines turn into the direction of the wake
+STEEP, MARGIN = 3.0, 0.93  # weight of growth; fraction of the logarithm of its limit from where it counts
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,14 +93,14 @@ def planned(
     planes: Sequence[SectionPlane], coarse: Layout | None, cells: int, longest: Mapping[int, float],
     wake: tuple[float, float], gaps: tuple[bool, bool],
 ) -> tuple[KeySection, tuple[SectionPlan, SectionPlan]]:  # fmt: skip
-    """Return a first middle section with about `cells` cells, and two plans of all sections.
+    """Return a first grid of the middle section, with about `cells` cells, and two plans for all sections.
 
     The first plan is better, but layers may be folded where nodes have to move far.
 
     Parameters
     ----------
     coarse : result of `coarse_section` for the middle section; None: it is computed.
-    longest : for the keys `INLET` and `OUTLET`, greatest length in any section of the straight grid lines.
+    longest : length of the longest straight grid lines of all sections, at `INLET` and `OUTLET` (keys).
     wake : as in `SectionPlan`.
     gaps : whether the blade ends in a gap at the hub, and at the casing.
     """
@@ -129,9 +125,10 @@ def planned(
 
 
 def beginning(plan: SectionPlan, planes: Sequence[SectionPlane], section: KeySection) -> Beginning:
-    """Return the beginning for a plan, from the first middle section, whose nodes move to the plan's places.
+    """Return the grid of the middle section, and the data from which all other sections are made.
 
-    Raises NoValidGridError if cells are folded.
+    `section` is a first grid of the middle section, see `planned`. Its nodes around the blade are moved to
+    the places of `plan`. Raises NoValidGridError if cells are folded.
     """
     others = [plane for plane in planes if plane is not section.plane]
     columns = [partial(LayerColumns.of, plane, plan.places.at(plane.height)) for plane in others]

@@ -53,9 +53,9 @@ class KeyTables:
 def key_tables(row: Row, first: float, growth: float, cells: int, zones: Sequence[Zone] = ()) -> KeyTables:
     """Return sections of a row, with about `cells` cells each, between which nodes are interpolated later.
 
-    `first` is the first-cell height, `growth` the growth ratio of the layers. Gaps among `zones` are filled.
-    Raises InputError if there is no room for layers, inlet or outlet. Raises NoValidGridError if cells are
-    folded.
+    `first` is the first-cell height, `growth` the growth ratio of the layers. Zones that are gaps also get
+    nodes inside the blade's outline. Raises InputError if there is no room for layers, inlet or outlet, and
+    NoValidGridError if cells are folded.
     """
     planes, coarse = _planes(row, first, growth)
     gaps = row.hub_gap > 0.0, row.tip_gap > 0.0

@@ -21,17 +21,15 @@ from meshonet.solvers.refinement.size_metric import SizeMetric
 from meshonet.solvers.rows.section_plane import SectionPlane
 from meshonet.solvers.rows.whole_section import whole_section
 
-UPPER, TRAILING, LOWER, LEADING = range(8, 12)
-"""Numbers of the template's blocks around the blade."""
+UPPER, TRAILING, LOWER, LEADING = range(8, 12)  # numbers of the template's blocks around the blade
 REMEDY = "use more {cells}, a larger {first_cell}, or profiles nearer to each other there"
-COARSE = 300
-"""Number of iterations of the first optimisation."""
+COARSE = 300  # number of iterations of the first optimisation
 TOLERANCE = 1e-3
 _TRIES, _NEAR = 4, 0.03  # largest number of choices of counts; sufficient relative accuracy of the total
 
 
 def coarse_section(plane: SectionPlane, *, early: bool = True) -> Layout:
-    """Return a coarse block layout of a section; with `early`, initial nodes are at the blade's corners.
+    """Return a coarse, optimised block layout of a section; with `early`, nodes first move to blade corners.
 
     Raises InputError if there is no room for inlet or outlet; NoValidGridError if cells are folded.
     """
@@ -45,7 +43,7 @@ def middle_section(
 
     Parameters
     ----------
-    longest : for the keys `INLET` and `OUTLET`, greatest length in any section of the straight grid lines.
+    longest : length of the longest straight grid lines of all sections, at `INLET` and `OUTLET` (keys).
     coarse : result of `coarse_section`; None: it is computed.
 
     Raises NoValidGridError if cells are folded.

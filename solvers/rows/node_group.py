@@ -27,7 +27,7 @@ class NodeGroup:
     zones: Sequence[Zone]  # zones of the span, from hub to casing
     ids: Indices  # (m,) indices of the nodes
     lines: SpanLines  # s and theta of the nodes as functions of the height
-    around: SpanLines | None  # places u of columns of layers, by height; None without columns
+    around: SpanLines | None  # places (0 to 1) of columns of layers around the blade; None without columns
     first: float  # height of first cells at the blade
 
     @property
@@ -106,7 +106,7 @@ class NodeGroup:
         """Write x, y, z of the group's nodes into the array `space` (levels, n, 3) of all nodes of the row.
 
         `values` (levels, m, 3) are the nodes' coordinates s, theta, h (see `Channel`). `rises` are small
-        displacements of nodes in layers near the ends of the blade.
+        displacements of nodes in the blade's wall layers next to gaps at hub or casing.
         """
         self.row.channel.store(values, self.ids, space)
         if rises:

@@ -41,8 +41,8 @@ class Rise:
         Parameters
         ----------
         row, zone, blade : the row, and the height ranges (zones) of the gap and of the blade.
-        around : places (0 to 1) around the blade of k grid lines through its layers, by height.
-        lines : s (along the channel) and theta of all k * (layers + 1) nodes on these lines, by height.
+        around : places, 0 to 1 around the blade, where k grid lines leave it, as functions of the height.
+        lines : s (along the channel) and theta of the k * (layers + 1) nodes on these lines, likewise.
         """
         end, up, width = (blade.high, 1.0, row.tip_gap)
         if zone.low == 0.0:
@@ -59,7 +59,7 @@ class Rise:
         return replace(self, deep=self.deep[part], moves=self.moves[part])
 
     def shares(self, heights: Floats) -> Floats:
-        """Return fractions (levels, k) of the displacements `moves` at `heights` (levels, k) in the span."""
+        """Return factors of displacements at `heights` (levels, k), from 1 at the blade's end to 0."""
         off = self.up * (heights - self.end)
         away = np.where(off > 0.0, off / self.gap, -off / self.deep)
         return np.asarray(smooth_step(np.clip(1.0 - away, 0.0, 1.0)))
@@ -85,7 +85,7 @@ def raise_layers(
     rises : the displacements.
     space : (levels, k, rows, 3) nodes of k grid lines through the layers, at levels (indices along the span).
     heights : (levels, k) heights of the nodes on the blade, 0 at the hub and 1 at the casing.
-    ends : levels at which the blade or a gap ends; a level next to each; prescribed distances of the two.
+    ends : indices of levels that bound blade and gaps, of a level next to each, and cell heights between.
     first : height of first cells at the blade.
     """
     rows = space.shape[2]

@@ -22,7 +22,7 @@ class RowRequest(VolumeRequest):
         First-cell height as y+ on a turbulent flat plate, with the Reynolds number of the longest chord, at a
         distance of `chord_fraction` chords from its leading edge.
     growth : float, optional
-        Largest growth ratio of cells away from walls; by default 1.2.
+        Largest ratio of neighbouring cells; by default 1.2.
     cells : int, optional
         Approximate number of cells in one passage; by default 500,000.
     copies : int, optional

@@ -73,7 +73,7 @@ class SectionPlane:
 
     @property
     def room(self) -> tuple[float, float]:
-        """Distances in pitches from the layers to the inlet and to the outlet."""
+        """Distances in pitches from the blade with its wall layers to the inlet, and to the outlet."""
         before, behind = self.cascade.ends
         return before / self.cascade.pitch[1], behind / self.cascade.pitch[1]
 
@@ -136,7 +136,7 @@ class SectionPlane:
         return np.interp(np.mod(arcs, self._walls[-1]), self._walls, np.append(self.places, 1.0))
 
     def front_arcs(self, u: Floats) -> Floats:
-        """Return arc lengths (n,) on the layers' outer edge at the ends of lines from places `u` (n,)."""
+        """Return the arc lengths where lines from `u` (n,), 0 to 1 on the blade, leave the wall layers."""
         ring = self.cascade.ring
         length, start = self._walls[-1], ring.arcs[0]
         walls = np.append(ring.arcs, start + length)
@@ -146,7 +146,11 @@ class SectionPlane:
 
     @cached_property
     def across(self) -> tuple[Floats, Floats]:
-        """Opposite places (n,) on the next blade, and lean (n,) per offset in u, for `ChannelLines`."""
+        """Places on the next blade opposite `ON_SIDE`, as 1 - u (n,), and blade length over distance (n,).
+
+        u runs from 0 to 1 around a blade. The distance is that of the outer edges of both blades' layers. The
+        ratio is 0 where nothing is opposite.
+        """
         front, pitch = self.cascade.ring.front, np.array([0.0, self.cascade.pitch[1]])
         one, other = (front.at(self.front_arcs(u)) for u in (ON_SIDE, 1.0 - ON_SIDE))
         off = ((other + pitch).T[:, None] - one.T[:, :, None]) ** 2
@@ -160,7 +164,7 @@ class SectionPlane:
         return lower, np.where(inside, self.cascade.blade.length / np.sqrt(here), 0.0)
 
     def place(self, point: Floats) -> str:
-        """Return, as text for users, the position of a point (2,) along the span and along the blade."""
+        """Return, as text for users, at which height a point (m', theta) is, and how far along the blades."""
         share = float(self.shares(point[None])[0])
         along = f"between the blades, {100.0 * share:.0f} % of the way along them"
         if share < _AT_EDGE:
@@ -177,7 +181,7 @@ class SectionPlane:
         return np.interp(points[:, 0], self._stations, _SHARES)
 
     def stations(self, shares: Floats) -> Floats:
-        """Return the coordinate m' (n,) along the flow at positions `shares` (n,), defined as in `shares`."""
+        """Return m' along the flow at positions `shares` (n,): -1 inlet, 0 and 1 blade edges, 2 outlet."""
         return np.interp(shares, _SHARES, self._stations)
 
     def camber(self, shares: Floats) -> Floats:

@@ -48,12 +48,12 @@ class SpanLines:
 
 
 def slopes_at_keys(values: Floats) -> Floats:
-    """Return derivatives (k, n, ...) of polynomials at the k `key_heights`, from their values there."""
+    """Return derivatives (k, n, ...) at ``key_heights(k)`` of polynomials with `values` (k, n, ...) there."""
     return _times(_slopes(len(values)), values)
 
 
 def integrals_at_keys(values: Floats) -> Floats:
-    """Return integrals (k, n, ...) of polynomials from 0 to the k `key_heights`, from their values there."""
+    """Return integrals (k, n, ...) from 0 to ``key_heights(k)`` of polynomials with these `values` there."""
     return _times(_integrals(len(values)), values)
 
 

@@ -31,7 +31,7 @@ _LEAST = 0.35  # smallest ratio of a step between neighbouring nodes to the same
 
 @dataclass(frozen=True, eq=False)
 class SpanPlaces:
-    """Places of k nodes around a blade, from 0 to 1 (u of `SectionPlane`), which are linear in the height."""
+    """Places of k nodes, from 0 to 1 around a blade, which change linearly from hub to casing."""
 
     ends: tuple[Floats, Floats]  # places u (k,) at the hub and at the casing
     gaps: tuple[bool, bool]  # whether the blade ends there in a gap; then each node at u has one at 1 - u
@@ -71,7 +71,7 @@ class SpanPlaces:
         return np.asarray(np.mod(start + height * wrapped(end - start), 1.0))
 
     def evened(self, planes: Sequence[SectionPlane], growth: float, pairs: Indices) -> "SpanPlaces":
-        """Return the positions of nodes, moved so that neighbouring steps have ratios up to `growth`."""
+        """Return places whose steps around the blade have ratios up to `growth`; for parameters, see `of`."""
         lines, corners = ChannelLines.of(planes), planes[0].corners
 
         def even(k: int) -> Floats:

@@ -81,7 +81,7 @@ def smooth_arcs(lengths: Floats, ends: tuple[Floats | float, Floats | float | No
 def smooth_cells(
     length: Floats | float, ends: tuple[Floats | float, Floats | float | None], growth: float, least: int
 ) -> int:
-    """Return the smallest number of cells, from `least` on, whose ratio in `smooth_arcs` is at most `growth`.
+    """Return the smallest cell count, at least `least`, to which `smooth_arcs` gives ratios up to `growth`.
 
     `length` and both cell lengths `ends` are numbers, or (n,) for n lines. The last one may be None (free).
     """
@@ -122,7 +122,7 @@ class Spacing:
 
     @classmethod
     def of(cls, lengths: tuple[float, float], ends: Ends, growth: float, cells: int) -> Self:
-        """Return the table for lines of ``lengths[0]`` to ``lengths[1]``, with the end cells `ends`."""
+        """Return the spacing of nodes for lines ``lengths[0]`` to ``lengths[1]`` long; see `two_sided`."""
         known = np.linspace(*lengths, _LENGTHS if lengths[1] > lengths[0] * (1.0 + 1e-9) else 1)
         return cls(lengths, (two_sided(known, ends, growth, cells) / known[:, None]).T)
 
@@ -147,7 +147,7 @@ class LineArcs:
 
     @classmethod
     def through(cls, samples: Floats) -> Self:
-        """Return the arc lengths of n lines; parameters of the k `samples` (k, n, 3) are `key_heights`."""
+        """Return arc lengths on n lines with points `samples` (k, n, 3) at parameters ``key_heights(k)``."""
         speed = norms(slopes_at_keys(samples))
         arcs = integrals_at_keys(speed)
         lengths, wanted = arcs[-1], key_heights(len(samples))[:, None]
@@ -168,7 +168,7 @@ class LineArcs:
 
 
 def line_parts(samples: Floats, ends: Ends, growth: float, cells: int) -> Floats:
-    """Return parameters (cells + 1, n), 0 to 1, of nodes on n lines with the cell lengths of `two_sided`.
+    """Return parameters (cells + 1, n), 0 to 1, of nodes on n lines; cells grow by `growth` from both `ends`.
 
     `samples` (SAMPLES, n, 3) are points of the lines at the parameters ``key_heights(SAMPLES)``.
     """

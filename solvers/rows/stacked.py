@@ -42,7 +42,7 @@ class StackedRow:
 
     Attributes
     ----------
-    columns : (k, layers + 1) nodes of k grid lines from the blade through its layers, in clockwise order.
+    columns : (k, layers + 1) node indices on k lines from the blade through its layers, in order around it.
     """
 
     def __init__(self, row: Row, keys: KeyTables, zones: Sequence[Zone], first: float, growth: float) -> None:
@@ -89,9 +89,9 @@ class StackedRow:
         return second, partner[second]
 
     def nodes(self) -> tuple[RowNodes, list[Callable[[], None]]]:
-        """Return the nodes, and functions still to be called, which compute x, y, z of the nodes in layers.
+        """Return nodes, and functions still to be called, that compute x, y, z of nodes in the wall layers.
 
-        The nodes of the second periodic side are not computed.
+        Until then, x, y, z there are undefined. The nodes of the second periodic side are not computed.
         """
         groups = self._groups()
         arcs = in_threads(NodeGroup.arcs, groups)

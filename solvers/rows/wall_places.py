@@ -26,7 +26,7 @@ def even_wall_places(
     ----------
     corners : (c,) places of nodes that stay.
     pairs : (p, 2) a node of the upper and a node of the lower side, joined by a line across the channel.
-    lines : lines normal to the layers, from which the lines of pairs should not deviate more than before.
+    lines : ideal lines across the channel; angles between them and lines of `pairs` should not increase.
     opposite : whether nodes at u and 1 - u stay opposite each other; `lines` then have no effect.
     """
     limit = MARGIN * math.log(growth)

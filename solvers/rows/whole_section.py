@@ -29,8 +29,7 @@ def whole_section(
     beyond : layout of the blocks beyond the layers, in m' (see `MeridionalMap`) and theta.
     layers : number of layers.
     largest : length of the longest cells.
-    longest : for the keys `INLET` and `OUTLET`, greatest length in any section of the straight grid lines;
-        it determines the number of cells on them.
+    longest : length of the longest such lines of all sections, for cell counts; keys `INLET` and `OUTLET`.
     """
     cascade = plane.cascade
     mesh = beyond.mesh

@@ -21,7 +21,7 @@ _NOTHING = 1.0, 0.05, 0.1
 
 @dataclass(frozen=True)
 class PlaneMeasures:
-    """Quality measures of a planar grid that must not become larger, and a `score`: smaller is better."""
+    """Quality measures of a planar grid, none of which may increase, and a `score`, better if smaller."""
 
     folded: int
     angle: float  # largest non-orthogonality of a face in degrees

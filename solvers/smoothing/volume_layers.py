@@ -122,7 +122,7 @@ def _at(points: Floats, place: Floats, wanted: Floats) -> Floats:
 
 
 def with_first_heights(nodes: Floats, first: Indices, heights: Floats) -> Floats:
-    """Return `nodes` (n, 3) with edges `first` (m, 2) of lengths `heights` (m,); only second nodes move."""
+    """Return `nodes` (n, 3), with second nodes of edges `first` (m, 2) moved to distances `heights` (m,)."""
     foot = nodes[first[:, 0]]
     way = nodes[first[:, 1]] - foot
     moved = nodes.copy()

@@ -14,7 +14,7 @@ DEFAULT_FAR_FIELD = 15.0  # chords
 
 @dataclass(frozen=True, kw_only=True)
 class StackRequest(VolumeRequest):
-    """Options of the surface or volume grid of a stack, checked on construction.
+    """Options of the surface or volume grid of stacked sections (wing, blade, duct), checked on construction.
 
     The unit of length is the longest chord; for a duct, it is the unit of the positions of sections.
 

@@ -47,7 +47,7 @@ class Around:
     def law(self, height: float, length: float, nose: float | None = None) -> Callable[[Floats], Floats]:
         """Return the distribution of `cells` along a side of a section, from the trailing edge to the nose.
 
-        For parameters, see `ends`. Raises InputError if `cells` cells cannot have these lengths.
+        For parameters, see `ends`. Raises InputError if no distribution has the end cells of `ends`.
         """
         return TanhLaw.fitted(self.cells, *self.ends(height, length, nose))
 
@@ -70,9 +70,8 @@ def around(
 ) -> Around:  # fmt: skip
     """Return the distribution of `nodes` nodes around sections, including the repeated first node.
 
-    Other parameters are the fields of `Around`.
-
-    Raises InputError if nodes are too few or even in number, or if `gap` is out of its range.
+    Other parameters are the fields of `Around`. Raises InputError if nodes are too few or
+    even in number, or if `gap` is out of its range.
     """
     if not LEAST_AROUND <= nodes <= MOST_AROUND or nodes % 2 == 0:
         problem = f"{nodes} nodes around a section"

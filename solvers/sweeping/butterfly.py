@@ -56,9 +56,9 @@ class CrossSection:
         return [middle + core * ((1.0 - bend) * line + bend * arc - middle) for line, arc in both]
 
     def across(self, core: float, radial: float, *, eighth: bool = False) -> tuple[Floats, Floats]:
-        """Return lengths (k,) of lines from the wall to the core, and sizes (k,) of the core cells there.
+        """Return lengths (k,) of lines from the wall to the core block, and sizes (k,) of its cells there.
 
-        If `eighth`, only an eighth of the lines is returned, which suffices for a circle.
+        For `core`, `radial`, see `FiveBlocks`. `eighth` returns an eighth of the lines, enough for a circle.
         """
         inner = self.inner(core, radial)
         lengths = [norms(side - arc) for side, arc in zip(inner, self.arcs, strict=True)]
@@ -81,7 +81,7 @@ class CrossSection:
 def planned(
     sections: Sequence[CrossSection], growth: float = GROWTH, rows: int | None = None, *, radial: bool = False
 ) -> FiveBlocks:
-    """Return one division for all sections, in which the growth ratio of cells is at most `growth`.
+    """Return one division into blocks for all sections, in which cells grow by at most `growth`.
 
     If that is impossible, the growth ratio is the least possible. `rows` is the number of rows of cells in
     the ring, by default the smallest that suffices. `radial`, for circles, makes lines of the ring radial.

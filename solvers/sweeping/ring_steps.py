@@ -16,8 +16,8 @@ _CLOSE = 1e-9  # of the length, to which steps fill it
 def ring_steps(lengths: Floats, sizes: Floats, rows: int, first: float | None) -> Floats:
     """Return the steps (k, rows) of k lines of `lengths` (k,); a cell of size `sizes` (k,) follows each line.
 
-    Steps change by one ratio from `first` to the size of that cell, then stay equal; if `first` is None, they
-    only end with it. If a ratio above `LARGEST` were needed, they do not fill the line (see `largest_ratio`).
+    Steps change by one ratio from `first` to the size of that cell, then stay equal. Without `first`, they
+    change along the whole line and end with that size. Ratios above `LARGEST` are not used: lines stay short.
     """
     most = math.log(LARGEST)
     low, high = np.full(len(lengths), 0.0 if first else -most), np.full(len(lengths), most)
@@ -39,7 +39,7 @@ def _steps(sizes: Floats, rows: int, first: float | None, rate: Floats) -> Float
 
 
 def fewest_rows(lengths: Floats, sizes: Floats, first: float | None, growth: float) -> int:
-    """Return a low estimate of the number of rows with which `ring_steps` has ratios up to `growth`."""
+    """Return about how many rows `ring_steps` needs for ratios of steps up to `growth`, rather too few."""
     if first is None:
         return max(1, round(float((lengths / sizes).mean())) - TRIED // 2)
     even = math.ceil(float((lengths / np.maximum(sizes, first)).max()) - _CLOSE)

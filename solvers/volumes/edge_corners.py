@@ -18,7 +18,7 @@ Ranges = list[tuple[int, int]]  # first and end index of nodes along each direct
 
 
 def check_corners(faces: SixFaces) -> None:
-    """Raise InputError, with the node, if no position of the inner nodes leaves all cells valid.
+    """Raise InputError, which names a place, if cells are folded wherever the inner nodes are.
 
     At an edge of the volume, the two faces alone determine the Jacobians of cells, which must be positive.
     Elsewhere, the faces must leave a valid position for each inner node next to them (see `closed_place`).

@@ -18,7 +18,7 @@ REACH = 12.0  # number of steps over which the correction decays by a factor e
 def keep_first_cells(planes: Floats, faces: SixFaces, laws: Laws) -> tuple[str, ...]:
     """Restore first-cell heights in `planes` (3, ni, nj, nk), in place; return the names of changed faces.
 
-    `laws` are relative positions of nodes along edges. A face is changed if they are clustered towards it.
+    `laws` are relative positions of nodes along edges. A face is changed if nodes cluster towards it.
     The heights at its nodes are interpolated from the first-cell heights at its four edges.
     """
     kept: list[str] = []

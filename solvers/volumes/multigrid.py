@@ -26,7 +26,7 @@ SWEEPS, FIRST = 12, 30  # on the coarsest level: in a cycle, and to start with
 class Transfer:
     """Interpolations along one direction between a multigrid level and the next coarser one.
 
-    For each node of a result there are the index of the first node that contributes, and weights.
+    Each is a pair: for each resulting node, the index of the first contributing node, and weights from it on.
     """
 
     up: tuple[NDArray[np.intp], Floats]  # (n, 2) linear interpolation to the fine nodes
@@ -53,7 +53,7 @@ class Level:
             winslow_smooth(x, self.right if forced else None, factor, self.threads, self.room)
 
     def norm(self, x: Floats, forced: bool) -> float:
-        """Store the residual of x (3, ni, nj, nk); return its norm. `forced`: with the right-hand side."""
+        """Store the residual of x (3, ni, nj, nk), return its norm; the right side is 0 unless `forced`."""
         right = self.right if forced else None
         return float(np.sqrt(winslow_residual(x, right, self.residual, self.threads, self.room)))
 

@@ -12,7 +12,7 @@ from meshonet.solvers.energy.hexes import HexProblem, Slides, descent_of
 
 
 class PlanesDescent(HexProblem):
-    """Minimisation over the inner nodes of a volume `planes` (3, ni, nj, nk), in place.
+    """Minimisation of a grid functional over the inner nodes of a volume `planes` (3, ni, nj, nk), in place.
 
     In each direction, the target length of cell edges is their mean length on the volume's edges. With
     `cubes`, all directions have the same target length.

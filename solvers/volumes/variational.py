@@ -39,12 +39,12 @@ def variational(
 ) -> Solution:
     """Minimise a functional of `meshonet.solvers.energy.hex_functional` over the nodes inside `faces`.
 
-    A coarse optimum is interpolated to all nodes by splines. If cells fold, they are repaired.
+    The optimum on a coarse grid is interpolated to all nodes by splines. If cells fold, they are repaired.
 
     Parameters
     ----------
-    max_cycles : largest number of iterations on the optimised grid.
-    coarse : largest number of nodes per direction of this grid; "auto": 33; None: as many as on the faces.
+    max_cycles : largest number of iterations on the coarse grid.
+    coarse : largest number of its nodes per direction; "auto": 33; None: as many as on the faces.
     energy : ``angles``, for right angles and gradual changes of length, or ``shape``, for cells like cubes.
 
     Raises InputError if a setting is not positive, if an edge has no length, or if the faces are such that a

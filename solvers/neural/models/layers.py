@@ -48,8 +48,7 @@ def initial(shapes: Shapes, rng: np.random.Generator) -> Arrays:
     """Return random initial parameters of the given shapes; the end of a name determines the distribution.
 
     Biases are 0. Weights are uniform after Glorot & Bengio, Understanding the difficulty of training deep
-    feedforward neural networks (2010). Spectral weights are normal with standard deviation 1/inputs. Poles of
-    transfer functions have decay rates of 0.5 to 20 (log-uniform) and up to 4 oscillations over the domain.
+    feedforward neural networks (2010). Spectral weights are normal with standard deviation 1/inputs.
     """
     arrays: Arrays = {}
     for name, shape in shapes.items():

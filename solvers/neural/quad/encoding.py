@@ -52,9 +52,9 @@ def planes_of(z: Complexes) -> Floats:
 def features(z: Any, step: Any, xp: Any, around: bool = False) -> Any:
     """Return the network's inputs (batch, n, n, FEATURES) for normalised complex grids `z` (batch, n, n).
 
-    `step` (batch, n, n) is the last Picard step (see `picard.approach`). With `around`, `z` are O grids
-    unrolled to strips (batch, m + 1, n), in which the last of m + 1 lines is the first plus one period. The
-    result then has the shape (batch, m, n, FEATURES).
+    `step` (batch, n, n) is the last Picard step (see `picard.approach`). With `around`, `z`
+    (batch, m + 1, n) are O grids mapped to periodic strips by i log(z - centre), so that the last line of n
+    nodes is the first plus one period. The result then has the shape (batch, m, n, FEATURES).
     """
     n = z.shape[-1]
     if around:

@@ -35,9 +35,9 @@ def approach(
         alpha = |z_eta|^2, beta = z_xi . z_eta, gamma = |z_xi|^2        of the previous iterate
 
     `z` (batch, n, n) are nodes x + i y of grids of unit size, arrays of `xp`, numpy or torch. With `around`,
-    `z` (batch, m + 1, n) are O grids unrolled to strips; ``z[:, m]`` is ``z[:, 0]`` plus one period. With
-    `harmonic`, steps start from the harmonic grid. Otherwise they start from `z` and are accelerated by
-    Anderson's method with one previous iterate, J. ACM 12 (1965) 547-560.
+    `z` (batch, m + 1, n) are O grids mapped to periodic strips by i log(z - centre), so that ``z[:, m]`` is
+    ``z[:, 0]`` plus one period. Without `harmonic`, steps do not start from the harmonic grid, but from `z`,
+    and are accelerated by Anderson's method with one previous iterate, J. ACM 12 (1965) 547-560.
     """
     if xp is np:
         return _compiled(z, around, steps, harmonic)

@@ -23,9 +23,10 @@ STILL = 1e-4  # moves at which a descent stops sooner, as `meshonet.solvers.ener
 def polished(
     boundaries: Sequence[Boundary], network: Network, topology: Topology, head: int, steps: int
 ) -> tuple[Floats, list[int]]:
-    """Return the network's grids (batch, 2, ni, nj) after up to `steps` iterations, and the steps of each.
+    """Return the network's grids (batch, 2, ni, nj), improved by a solver, and its iterations for each grid.
 
-    `boundaries` have equal node counts. `head` is the index in `encoding.HEADS` of the kind of grid.
+    The solver makes at most `steps` iterations per grid. `boundaries` have equal node counts. `head` is the
+    index of the kind of grid in `encoding.HEADS`.
     """
     if topology == "quad":
         coarse = coarse_grids.coarse_grids(coarse_grids.sides_of(boundaries), network, head)

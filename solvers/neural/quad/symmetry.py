@@ -80,7 +80,8 @@ def table(size: int) -> Integers:
 def convolution(weight: Any, places: Any, xp: Any) -> Any:
     """Return the kernel (8 * out, 8 * in, size, size) of a convolution that commutes with turns and mirrors.
 
-    `weight` (out, in, 8, size, size) are its parameters, `places` is ``table(size)``, `xp` numpy or torch.
+    `weight` (out, in, 8, size, size) are its parameters for the 8 symmetries of a square. `places`, from
+    `table`, says which of the 8 * size * size parameters is at each place of the kernel.
     """
     out, into, _, size, _ = weight.shape
     spread = weight.reshape(out, into, -1)[:, :, places]
@@ -88,11 +89,11 @@ def convolution(weight: Any, places: Any, xp: Any) -> Any:
 
 
 def lift(weight: Any, seen: Any) -> Any:
-    """Return the first layer's matrix (8 * out, FEATURES), from `weight` (out, FEATURES) and `SEEN`."""
+    """Return the first layer (8 * out, FEATURES): `weight` (out, FEATURES) times 8 symmetries, `seen`."""
     return (weight[:, None, :, None] * seen).sum(2).reshape(ORDER * len(weight), -1)
 
 
 def projection(weight: Any, elements: Any, xp: Any) -> Any:
-    """Return the last layer's matrix (2 * heads, 8 * in), from `weight` (heads, 2, in) and `ELEMENTS`."""
+    """Return the last layer (2 * heads, 8 * in): symmetries `elements` times `weight` (heads, 2, in) / 8."""
     back = weight[:, None, :, :, None] * xp.moveaxis(elements, 0, -1)[:, :, None]
     return back.sum(2).reshape(2 * len(weight), -1) / ORDER

@@ -40,10 +40,11 @@ def unrolled(z: Any, centres: Any, xp: Any = np) -> tuple[Any, Any]:
 
 
 def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any = np) -> tuple[Any, Any, Any]:
-    """Return closed lines `walls` (batch, m + 1, n) as strips, centres (batch,), and a mask (see `unrolled`).
+    """Return closed lines mapped by i log(z - centre), the centres (batch,), and a mask (see `unrolled`).
 
-    The centre is the centroid inside the body's closed curve `wall` (batch, ni). If one of the n lines does
-    not wind exactly once around it, the centre is the result of `inside` for the nodes of the first line.
+    `walls` (batch, m + 1, n) are n closed lines around a body, of m + 1 complex nodes whose last repeats the
+    first. The centre is the centroid of the body's outline `wall` (batch, ni). If one of the lines does not
+    wind exactly once around it, the centre is the result of `inside` for the nodes of the first line.
     """
     centres = middles(wall[:, :-1], xp)
     strips, once = unrolled(walls, centres, xp)
@@ -55,13 +56,13 @@ def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any 
 
 
 def even(strips: Any, n: int, xp: Any = np) -> Any:
-    """Return straight, even lines (batch, m + 1, n) between the ends of `strips` (batch, m + 1, k)."""
+    """Return `n` evenly spaced nodes from ``strips[b, i, 0]`` to ``strips[b, i, -1]``, (batch, m + 1, n)."""
     eta = xp.linspace(0.0, 1.0, n, dtype=strips.real.dtype, device=strips.device)
     return strips[:, :, :1] * (1.0 - eta) + strips[:, :, -1:] * eta
 
 
 def factors(strips: Any, xp: Any = np) -> Any:
-    """Return factors (batch,) that scale `strips` (batch, m + 1, n) so that half a period has area 1."""
+    """Return factors (batch,) that scale strips of complex nodes (batch, m + 1, n) to area 2 per period."""
     heights = (strips[:, :-1, -1] - strips[:, :-1, 0]).imag.mean(1)
     return 1.0 / xp.sqrt(0.5 * TURN * heights)
 

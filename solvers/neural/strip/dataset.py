@@ -22,7 +22,7 @@ ACCEPTED = 1e-4  # a slower one is still kept below this: the rest is in the hig
 
 @dataclass(frozen=True)
 class Strips:
-    """Fourier modes of walls and Winslow's solution in n strips, conformal images of domains with a body."""
+    """Fourier modes of the walls and of Winslow's grid, for n regions around a body mapped to strips."""
 
     wall: Complexes  # (n, 2 MODES + 1) modes of the position F on the wall
     far: Complexes  # (n, 2 MODES + 1) the same on the far field
@@ -79,8 +79,8 @@ class StripTargets:
     """Training data: inputs, as `encode` returns them, and wanted outputs (n, 2 Q, COLUMNS).
 
     The wanted outputs represent R, Winslow's solution minus the harmonic extension of the walls, divided by
-    ``scale * size**2``, with `size` from `encode`. They are coefficients of the Q functions `basis`
-    (Q, LEVELS - 2) across the strip (proper orthogonal decomposition). Their mean square norm is 1.
+    ``scale * size**2``, with `size` from `encode`. At COLUMNS points along the strip, they are coefficients,
+    real parts first, of the Q functions `basis` (Q, LEVELS - 2) across it (proper orthogonal decomposition).
     """
 
     channels: Floats

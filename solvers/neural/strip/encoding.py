@@ -24,7 +24,7 @@ def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
 
     - channels (batch, CHANNELS, COLUMNS): the harmonic extension of the walls at the fractions `DEPTHS` of
       the height, and its derivative along theta, both divided by the size;
-    - scalars (batch, SCALARS): logarithm of the size, height, and offset of `far` from `wall` along theta;
+    - scalars (batch, SCALARS): log(size), the strip's height, and the shift of `far` along theta;
     - size (batch,).
     """
     mean = (far - wall)[:, 0]
@@ -42,9 +42,9 @@ def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
 def decode(coefficients: Any, basis: Any, scale: float, size: Any, xp: Any = np) -> Any:
     """Return Fourier modes (batch, 2 MODES + 1, LEVELS) of Winslow's solution minus the harmonic extension.
 
-    `coefficients` (batch, 2 Q, COLUMNS) are the outputs of the network, real parts first, then imaginary
-    parts. `basis` (Q, LEVELS - 2) has the basis functions at the inner Chebyshev points. The result is
-    multiplied by ``scale * size**2``, with `scale` from `StripTargets` and `size` (batch,) from `encode`.
+    `coefficients` (batch, 2 Q, COLUMNS) are the network's outputs at COLUMNS even steps along the strip, real
+    parts first. `basis` (Q, LEVELS - 2) has the basis functions at the inner Chebyshev points across it. The
+    result is multiplied by ``scale * size**2``, with `scale` of `StripTargets`, `size` (batch,) of `encode`.
     """
     q = len(basis)
     c = from_columns(coefficients[:, :q] + 1j * coefficients[:, q:], xp)

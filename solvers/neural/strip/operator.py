@@ -50,7 +50,7 @@ class StripOperator(Operator):
 
         `wall` and `far` (batch, 2 MODES + 1) are Fourier modes of the strip's two sides. `hand` (batch,) has
         signs from `meshonet.geometry.polygon.mirror.handedness`: with them, mirrored bodies get mirrored
-        grids, and symmetric bodies symmetric grids. The highest modes are damped, as in Picard steps.
+        grids, and symmetric bodies symmetric grids.
         """
         if self.network is None:
             return np.zeros((*wall.shape, LEVELS), complex)
