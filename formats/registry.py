@@ -167,7 +167,7 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
 
 
 def read_sections(text: str, fmt: str | None = None) -> Iterator[Grid | Shape]:
-    """Yield the grids in a file or, if it has none, the shapes in it.
+    """Yield the grids in a file or, if its format has no grids, the shapes in it.
 
     A name (``naca:2412``) and a layout of blocks also give shapes. Raises InputError as `read_shapes`.
     """

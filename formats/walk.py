@@ -36,7 +36,7 @@ class Walk:
     """One search for the files of inputs, which counts the files found and picked.
 
     In lists, empty lines and lines that begin with ``#`` are ignored. In folders, names that begin with a dot
-    or ``__`` are ignored, and so are folders beside a file of the same name, as ``out/`` is to ``out.h5``.
+    or ``__`` are ignored, and so is a folder such as ``out/`` beside a file ``out.h5``.
     """
 
     def __init__(self, inputs: Inputs) -> None:

@@ -51,7 +51,7 @@ def unstructured(grid: Grid) -> Unstructured:
 
 
 def points_of(grid: Grid, numbers: Sequence[Indices]) -> Floats:
-    """Return the points (n, d) of a mesh; ``numbers[b]`` has the index in them of each node of block b."""
+    """Return points (n, d) such that ``points[numbers[b]]`` are the nodes of block b."""
     count = 1 + max(int(number.max()) for number in numbers)
     points = np.empty((count, grid.blocks[0].nodes.shape[-1]))
     for number, block in zip(numbers, grid.blocks, strict=True):

@@ -88,7 +88,7 @@ class Candidate:
     real, integer : number types of coordinates, and of node counts or other integers.
     planes : whether the arrays of a block are stored plane by plane.
     numbers : text for messages, with the type of coordinates and the byte order.
-    kind : the same as Plot3D options.
+    kind : the same, as a set of Plot3D options.
     """
 
     layout: FileLayout

@@ -134,11 +134,11 @@ class SurfaceWing:
         return out
 
     def arc(self, place: float) -> float:
-        """Return the arc length, in chords at half span, around the first `place` strips (see `line`)."""
+        """Return the arc length, in chords at half span, of the first `place` strips around the section."""
         return float(np.interp(place, np.arange(len(self.strips) + 1), self._bounds))
 
     def places(self, arcs: Floats) -> Floats:
-        """Return the numbers of strips (n,), with fractions, of lengths `arcs` (n,); the inverse of `arc`."""
+        """Return how many strips (n,), with a fraction, make up lengths `arcs` (n,); the inverse of `arc`."""
         return np.interp(arcs, self._bounds, np.arange(len(self.strips) + 1))
 
     @property

@@ -18,9 +18,9 @@ from meshonet.geometry.blocks.grid import Grid
 class Member:
     """The grid lines of a block along the direction `axis` (0 is xi, 1 is eta), as a part of a family.
 
-    A family contains grid lines that continue each other from block to block. If `flipped`, in 2-D,
-    this block numbers them in the other direction than the family's first block. If `aligned`, only whole
-    sides are connected, and line k continues line k of the first block, from the other end if `flipped`.
+    A family has grid lines that continue each other from block to block. If `flipped` (in 2-D only), this
+    block numbers them in the other direction than the family's first block. If `aligned`, only whole sides
+    are connected, and line k continues line k of the first block, or the k-th from the end if `flipped`.
     """
 
     block: int

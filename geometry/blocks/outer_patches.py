@@ -61,7 +61,7 @@ def outer_patches(
 
 
 def rectangles(owners: NDArray[np.intp]) -> Iterator[tuple[int, Range]]:
-    """Divide a side into rectangles, each of one patch; yield the index of the patch and the range of nodes.
+    """Divide a side into rectangles of cells, each of one patch; yield patch index and range of nodes.
 
     Cells at a connection (`JOINED`) are left out. `owners` (n,) or (n, m) is the result of `owners_of`.
     """

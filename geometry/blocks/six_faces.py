@@ -87,7 +87,7 @@ class SixFaces:
         return edge_of(getattr(self, side), side, second)
 
     def steps_at_edge(self, side: Side, second: Side) -> Floats:
-        """Return the grid steps (n, 3) in face `side` between its edge with face `second` and the next row.
+        """Return the steps (n, 3) in face `side` between its edge with `second` and the next row of nodes.
 
         They point towards the higher index, even if this is the edge.
         """

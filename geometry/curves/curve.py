@@ -107,7 +107,7 @@ class Curve:
 
     @property
     def tables(self) -> tuple[Floats, Floats, Floats, Floats, int]:
-        """For C code: cubics in t; of parts of cubics, s, dt/ds at starts and at ends; parts per cubic."""
+        """For C code: cubics in t; their parts' arc lengths s, dt/ds at starts, at ends; parts per cubic."""
         return self._cubic, self._table, self._rate_start, self._rate_stop, _STEPS
 
     def _locate(self, s: Floats) -> tuple[Indices, Floats]:

@@ -29,7 +29,7 @@ class Places:
 
     @classmethod
     def inside(cls, count: int) -> Places:
-        """Return the entries for `count` inner nodes: on no loop, no corners, without periodic partners."""
+        """Return `Places` for `count` inner nodes: on no loop, no corners, without periodic partners."""
         none = np.full(count, -1, dtype=np.intp)
         return cls(none, np.zeros(count), np.zeros(count, dtype=np.intp), none.copy())
 

@@ -23,7 +23,7 @@ from meshonet.geometry.quality.metrics import FACE_NAMES
 
 @dataclass(frozen=True)
 class FaceMeasures:
-    """For each measure of faces, its largest value, where, and its mean; None if no face has the measure.
+    """For each measure of faces, its largest value, the cell there, and its mean; None if no face has it.
 
     A cell is (i, j) in a single planar block, (block, i, j) in several, and (block, i, j, k) in volumes.
     """

@@ -48,7 +48,7 @@ class Lattice:
 
 @dataclass(frozen=True)
 class SceneSheet:
-    """A layer of cells to draw, which is a part of the `Lattice` number `lattice`.
+    """A layer of cells to draw, with nodes from lattice number `lattice`: those of a block or of one layer.
 
     The sheet has the index `node` along the direction `axis` of the lattice; if `axis` is None, it is the
     whole lattice. `ranges` are its first and last nodes along the other directions. A sheet inside a large
