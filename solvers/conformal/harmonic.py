@@ -21,7 +21,7 @@ def extend(boundary: Boundary) -> Floats:
         quad   sum_k b_k sin(k pi xi) sinh(k pi a (1-eta)) / sinh(k pi a),     a = height / length
         o      sum_k c_k exp(2 pi i k xi) sinh(k T (1-eta)) / sinh(k T),       T = log(outer / inner length)
 
-    c_k (k not 0) are Fourier coefficients of the side's nodes, b_k those of its nodes minus a straight line.
+    c_k (k not 0) are Fourier coefficients of the side's nodes, b_k those of its nodes minus its chord.
 
     >>> s, zero, one = np.linspace(0.0, 1.0, 5), np.zeros(5), np.ones(5)
     >>> square = Boundary(*(np.stack(edge, axis=1) for edge in [(s, zero), (s, one), (zero, s), (one, s)]))

@@ -47,7 +47,7 @@ class Field:
         return cls(sources, places, np.ascontiguousarray(areas[sources]), near, where)
 
     def blended(self, motions: Floats) -> Floats:
-        """Return displacements (m, d) of m points; `motions` of boundary nodes are a result of `affine`."""
+        """Return displacements (m, d) of m points, means of the affine `motions` (d + d², k) of k nodes."""
         moved = np.empty_like(self.points)
         blend_motions(self.places, self.areas, motions, self.near, self.points, thread_count(), moved)
         return moved.T

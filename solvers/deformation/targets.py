@@ -45,7 +45,7 @@ class NodeTargets:
 def targets_of(table: NodeTable, walls: Mapping[str, NewWall] | NewWall) -> NodeTargets:
     """Return the new positions of the nodes of walls.
 
-    `walls` maps names of walls to their new shapes. If there is one wall, its new shape is enough. A `Grid`
+    `walls` maps names of walls to their new shapes. If a grid has one wall, its new shape is enough. A `Grid`
     or `Boundary` is also enough: its patches are the new shapes of the walls with the same names. Raises
     InputError if the grid has no wall of a given name, or if a new shape is unsuitable.
     """

@@ -54,7 +54,7 @@ class Measures:
     slack: Floats | float = 1.0
 
     def at(self, places: Floats, closed: bool) -> Floats:
-        """Return values (k, n) of the functions at `places` (n,), also beyond a `closed` curve's ends."""
+        """Return k functions along the curve, (k, n), at `places` (n,), also beyond its ends if `closed`."""
         turns = np.zeros(len(places))
         if closed:
             turns, places = np.divmod(places, self.arcs[-1])

@@ -52,7 +52,7 @@ class GrowthLimit:
         return np.asarray(weight * near * (2.0 * excess - near) + self.change * (growth - self.wanted) ** 2)
 
     def residuals(self, growth: Floats, derivatives: Floats, weight: float) -> Residuals:
-        """Return Gauss-Newton residuals of log growth ratios; `derivatives` (..., k, m) are by unknowns."""
+        """Return Gauss-Newton residuals of log growth ratios with `derivatives` (..., k, m) by m unknowns."""
         excess = np.maximum(np.abs(growth) - self.limit, 0.0)
         pull = weight * np.minimum(1.0, LINEAR / np.maximum(excess, LINEAR))
         stiffness = np.where(np.abs(growth) > self.limit - NEARLY, self.change + pull, self.change)

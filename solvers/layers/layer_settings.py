@@ -68,12 +68,12 @@ class LayerSettings:
 
     @property
     def steepest(self) -> float:
-        """Logarithm of the largest allowed ratio of neighbouring cells on grid lines that start at walls."""
+        """Logarithm of the largest allowed growth ratio of cells along lines that start at walls."""
         return math.log(self.limit) if self.limit else self.elsewhere
 
     @property
     def elsewhere(self) -> float:
-        """Logarithm of the largest allowed ratio of neighbouring cells on grid lines not starting at walls."""
+        """Logarithm of the largest allowed growth ratio of cells along lines that do not start at walls."""
         return max(ELSEWHERE * math.log(self.limit or self.growth), math.log(MOST_GROWTH))
 
     @property
