@@ -129,7 +129,7 @@ class Chords:
         return int((along[:, 0] * along[:, 2]).sum())
 
     def along_loops(self, counts: Indices) -> Indices:
-        """Return the cells (loops,) on boundary loops if opposite edges in set k have `counts`[k] cells."""
+        """Return cell counts (loops,) of boundary loops if opposite edges in set k have `counts`[k] cells."""
         mesh = self.layout.mesh
         along = np.zeros(len(mesh.domain.loops), dtype=np.intp)
         for edge in np.flatnonzero(self.wall):

@@ -25,7 +25,7 @@ class Near:
     square: Floats  # (p, m) squared cosine of the angle between the edge and the normal at this point
 
     def length(self, sizes: "SizeMetric") -> Floats:
-        """Return target lengths (m,) of edges by `sizes`: the smallest that the nearest wall points want."""
+        """Return target lengths (m,) of edges by `sizes`: the smallest by their nearest wall points."""
         rise = sizes.grading * self.distance
         high = np.minimum(sizes.across[self.point] + rise, sizes.largest)
         wide = np.minimum(sizes.along[self.point] + rise, sizes.largest)

@@ -54,7 +54,7 @@ class ChannelLines:
         return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
     def weights(self, pairs: Floats) -> Floats:
-        """Return squared ratios (p,) of the lean of lines (see `links`) to the result of `aside`."""
+        """Return (p,) the squared lean (see `links`) of lines per square of ``aside(pairs)``."""
         return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
 
     def aside(self, pairs: Floats) -> Floats:

@@ -136,7 +136,7 @@ class SectionPlane:
         return np.interp(np.mod(arcs, self._walls[-1]), self._walls, np.append(self.places, 1.0))
 
     def front_arcs(self, u: Floats) -> Floats:
-        """Return the arc lengths where lines from `u` (n,), 0 to 1 on the blade, leave the wall layers."""
+        """Return arc lengths on the layers' outer edge where lines from `u` (0 to 1 on the blade) end."""
         ring = self.cascade.ring
         length, start = self._walls[-1], ring.arcs[0]
         walls = np.append(ring.arcs, start + length)

@@ -29,7 +29,7 @@ class Zone:
 
 
 def section_cells(zones: Sequence[Zone], cells: int, growth: float) -> int:
-    """Return the cells at one height of a row with about `cells`; more if the growth limit requires it."""
+    """Return the cell count at one height of a row of about `cells` cells; higher if `growth` requires it."""
     return max(_needed(growth), int(cells / _sections(zones)))
 
 

@@ -17,7 +17,7 @@ def ring_steps(lengths: Floats, sizes: Floats, rows: int, first: float | None) -
     """Return the steps (k, rows) of k lines of `lengths` (k,); a cell of size `sizes` (k,) follows each line.
 
     Steps change by one ratio from `first` to the size of that cell, then stay equal. Without `first`, they
-    change along the whole line and end with that size. Ratios above `LARGEST` are not used: lines stay short.
+    change along the whole line and end with that size. Ratios are at most `LARGEST`; lines may stay unfilled.
     """
     most = math.log(LARGEST)
     low, high = np.full(len(lengths), 0.0 if first else -most), np.full(len(lengths), most)

@@ -89,7 +89,7 @@ def convolution(weight: Any, places: Any, xp: Any) -> Any:
 
 
 def lift(weight: Any, seen: Any) -> Any:
-    """Return the first layer (8 * out, FEATURES): `weight` (out, FEATURES) times 8 symmetries, `seen`."""
+    """Return the first layer (8 * out, FEATURES): `weight` (out, FEATURES) times 8 symmetries `seen`."""
     return (weight[:, None, :, None] * seen).sum(2).reshape(ORDER * len(weight), -1)
 
 
