@@ -147,9 +147,9 @@ class BladeSurface:
         return np.asarray(turned - mean - away * self.pitch)
 
     def lines(self, u: Floats) -> CubicTable:
-        """Return m splines along the span: s, theta and h at places `u` (m,) around the blade.
+        """Return m splines of s, theta and h along the span, at places `u` (m,) around the blade.
 
-        u is 0 at the leading edge and 0.5 at the trailing edge. s is 0 at the inlet and 1 at the outlet.
+        u: 0 leading, 0.5 trailing edge. s: 0 inlet, 1 outlet. h: 0 hub, 1 casing. theta: about the axis.
         """
         values = np.stack([profile.at(u) for profile in self.profiles])
         values[..., 1] += self._turns[:, None]

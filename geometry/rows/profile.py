@@ -211,8 +211,7 @@ class BladeProfile:
     def at(self, u: Floats) -> Floats:
         """Return coordinates s, theta, h (n, 3) at places `u` (n,) around the profile.
 
-        u is 0 at the leading edge and 0.5 at the trailing edge. s is 0 at the inlet and 1 at the outlet,
-        theta the angle about the axis, and h 0 at the hub and 1 at the casing.
+        u: 0 leading, 0.5 trailing edge. s: 0 inlet, 1 outlet. h: 0 hub, 1 casing. theta: about the axis.
         """
         arcs = self.arcs(u)
         m, theta = self.curve.at(arcs).T

@@ -40,9 +40,9 @@ def arcs_by_curvature(
     """Return arc lengths (cells + 1,) from one end of the trailing edge around the nose to the other.
 
     The cell size h combines four sizes, 1/h⁴ = Σ 1/hₖ⁴. Two are the sizes at the trailing and at the leading
-    edge plus `GROWTH` (ln 1.1) times the distance from there. One is the length on which the curve turns by
-    `TURN`. One is a constant that gives the number of cells. If cells are too few, growth is increased, and
-    so are the size at the leading edge and the length of a turn.
+    edge plus `GROWTH` (ln 1.1) times the distance from there. One is the length on which the curve turns by 3
+    degrees. One is a constant that gives the number of cells. If cells are too few, growth, the size at the
+    leading edge and the angle of 3 degrees are increased.
 
     Parameters
     ----------

@@ -55,7 +55,7 @@ class _Edge(NamedTuple):
 
 
 def with_bases(patches: Sequence[Floats]) -> tuple[list[Floats], list[int], tuple[str, ...]]:
-    """Return `patches` (ni, nj, 3), followed by a patch (base) for each open trailing edge, which it closes.
+    """Return `patches` (ni, nj, 3), followed by further patches (bases) that close open trailing edges.
 
     Also return the index of a patch beside each base, and notes. Raises InputError: a trailing edge whose two
     ends have different numbers of cells across its thickness.

@@ -23,7 +23,7 @@ class DrawnInputs:
         return len(self.draws) // self.shard[1]
 
     def parts(self, size: int) -> Iterator[tuple[int, tuple[Draw, ...]]]:
-        """Yield index and shapes of every n-th part from the k-th on; a part has `size` shapes."""
+        """Yield index and shapes of every n-th part of `size` shapes from the k-th on; `shard` is (k, n)."""
         k, n = self.shard
         for number in range(k - 1, -(-len(self.draws) // size), n):
             yield number, tuple(self.draws[number * size : (number + 1) * size])

@@ -78,7 +78,10 @@ class BodyMap:
         return np.hypot(points[..., 1] - self.body.y, points[..., 2])
 
     def steepness(self, places: Floats) -> Floats:
-        """Return angles (...) in radians between z and lines of theta at `places` s, theta, zeta (..., 3)."""
+        """Return angles (...), in radians, between the z axis and the direction around the body at `places`.
+
+        `places` (..., 3) are s, theta, zeta: along, around and away from the body.
+        """
         return np.minimum(places[..., 1], np.pi - places[..., 1])
 
     def places(self, points: Floats, near: Floats | None = None) -> Floats:

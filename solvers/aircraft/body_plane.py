@@ -182,9 +182,8 @@ class BodyEnd:
         """Return the plan of the patches between the tip of nose or tail and the nearest wing.
 
         For each of the nested surfaces around the body, innermost first, `sides` has the nodes (n, 3) at
-        which the patches end beside the wing, and the lengths (n,) in s of the cells there. Nodes are s,
-        theta, zeta: along, around and away from the body, with s = 0 at the tip. `points` maps them to x, y,
-        z.
+        which the patches end beside the wing, and the lengths (n,) in s of cells there. Nodes are s, theta,
+        zeta: along, around and away from the body, s = 0 at the tip. `points` maps them to x, y, z.
         """
         nodes, cells = sides[0]
         way, last = min((float(nodes[k, 0]), float(cells[k])) for k in (0, -1))

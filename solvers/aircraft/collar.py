@@ -66,9 +66,10 @@ def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
     """Return from which nodes of a wing's section lines lead to the corners of the rectangle `box`.
 
-    For the two rear corners, the nodes are the first number of nodes away from the middle of the trailing
-    edge. For the front corners, they are the second number away from the nose. Both numbers are at least
-    `fewest`, and make cells on both sides of a corner similarly long. `root` (n, 2) is the section.
+    The first number says how many nodes from the middle of the trailing edge the lines to both rear corners
+    begin. The second number says how many nodes from the nose the lines to both front corners begin. The
+    least number is `fewest`. Cells on both sides of a corner are similarly long. `root` (n, 2) is the
+    section.
     """
     normals, half = _normals(root), (len(root) - 1) // 2
     tried = np.arange(fewest, half // 3 + 1)
@@ -89,7 +90,7 @@ def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
 
 
 def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]:
-    """Return the cell lengths along the rear and front side of `box`; `corners` has half their cells."""
+    """Return the cell lengths along the rear and front side of `box`, which have 2 `corners` cells."""
     edge, nose = corners
     return (box.high - box.low) / (2 * edge), (box.high - box.low) / (2 * nose)
 

@@ -50,7 +50,7 @@ class Hole:
 
     @property
     def plane(self) -> Floats:
-        """Nodes (n, 2) of the section: places along and around the body, in lengths of the space x, y, z."""
+        """Nodes (n, 2) of the wing's section: lengths along and around the body, in the unit of x, y, z."""
         return self.section * self.scale
 
     @property
@@ -80,9 +80,9 @@ class CollarPlan:
 
 
 def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
-    """Return the two numbers of nodes of `corner_nodes` for a rectangle around each section of a wing.
+    """Return how many nodes from trailing edge and nose of a wing lines to the corners around it begin.
 
-    They are averaged over the sections `holes`, and count from the trailing edge and from the nose.
+    Corners are those of a rectangle around a section. The numbers are means over the sections `holes`.
     """
     corners = [corner_nodes(hole.plane, hole.box, _CORNER) for hole in holes]
     edge, nose = (round(sum(each) / len(corners)) for each in zip(*corners, strict=True))
@@ -92,7 +92,7 @@ def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
 def planned_collar(
     holes: Sequence[Hole], corners: tuple[int, int], first: float, growth: float
 ) -> "tuple[CollarPlan, list[CollarLevel]]":
-    """Return numbers of cells for the grids (collars) around a wing's sections, and these grids.
+    """Return numbers of cells, equal for the grids (collars) around all sections of a wing, and these grids.
 
     `holes` are the sections of the wing from the root on. `corners` is a result of `planned_corners`. Numbers
     of cells are as small as growth permits.

@@ -137,9 +137,9 @@ class ColumnLevel:
         return replace(self, crown=zeta + 0.5 * (fin.levels[-1].hole.zeta - zeta))
 
     def beside_wing(self, wing: ColumnLevel, side: Side) -> ColumnLevel:
-        """Return these patches of a fin, nearer in theta and zeta to the patches of a `wing` next to them.
+        """Return the patches of a fin with theta and zeta nearer to those of the patches at the next `wing`.
 
-        Theta changes below the fin, zeta at the keel. `side` is the edge of the wing's patches.
+        Theta changes below the fin, zeta at the keel. `side` is the edge of the wing's patches near the fin.
         """
         own, others = self.low, side[0][: len(self.low), 1]
         keel = self.zeta + _FOLLOWING * (wing.zeta - self.zeta)
@@ -156,7 +156,7 @@ class ColumnLevel:
         return self.levels[0].low_and_top[0] if self.below is None else self.below
 
     def above(self) -> tuple[float, tuple[float, float]]:
-        """Return the distance between the grids of wing and fin, and its first and last cell's lengths."""
+        """Return the distance between the grids around wing and fin, and lengths of the end cells between."""
         wing, fin = self.levels
         low, high = self._gap
         rho = 0.5 * float(wing.hole.scale[1] + fin.hole.scale[1])

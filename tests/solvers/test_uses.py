@@ -17,16 +17,7 @@ from meshonet.solvers.pipeline.deformations import DeformRequest
 from meshonet.solvers.pipeline.methods import METHODS
 from meshonet.solvers.pipeline.named import method_named
 from meshonet.solvers.pipeline.request import GridRequest, ManyBlocks, OneBlock, Volume
-from meshonet.solvers.pipeline.uses import (
-    ALWAYS,
-    COUNTED,
-    FOR_MANY,
-    IN_SPACE,
-    MANY,
-    ONE,
-    USES,
-    refuse,
-)
+from meshonet.solvers.pipeline.uses import ALWAYS, COUNTED, FOR_MANY, IN_SPACE, MANY, ONE, USES, refuse
 from meshonet.solvers.rows.request import RowRequest
 from meshonet.solvers.stacking.request import StackRequest
 from meshonet.solvers.sweeping.sweep import Sweep
