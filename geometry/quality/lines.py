@@ -28,9 +28,8 @@ class Lines:
     """Largest and mean growth ratios and bends (turning angles in degrees) of the grid lines of a grid.
 
     `growth` is along each direction of the blocks. Fields that end in ``_inside`` are at nodes inside blocks,
-    fields that end in ``_across`` at nodes on sides between blocks. `leaving` is the growth along lines that
-    start at walls, continued from block to block, and `by_wall` that of each wall. Without nodes a field is
-    None.
+    those in ``_across`` at nodes on sides between blocks. `leaving` is the growth along lines that start at
+    walls, continued from block to block, and `by_wall` that of each wall. Without nodes a field is None.
     """
 
     growth: Growth

@@ -67,9 +67,8 @@ def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
     """Return from which nodes of a wing's section lines lead to the corners of the rectangle `box`.
 
     The first number says how many nodes from the middle of the trailing edge the lines to both rear corners
-    begin. The second number says how many nodes from the nose the lines to both front corners begin. The
-    least number is `fewest`. Cells on both sides of a corner are similarly long. `root` (n, 2) is the
-    section.
+    begin. The second says how many nodes from the nose the lines to both front corners begin. Both are at
+    least `fewest`. Cells on both sides of a corner are similarly long. `root` (n, 2) is the section.
     """
     normals, half = _normals(root), (len(root) - 1) // 2
     tried = np.arange(fewest, half // 3 + 1)
