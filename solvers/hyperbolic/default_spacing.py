@@ -20,17 +20,32 @@ PART = 0.05
 MOST = 0.25  # the same where rows are few, so that they grow by no more than `GROWTH`
 GROWTH = 1.2  # largest ratio of neighbouring rows
 CHOSEN = "{first_cell} is not given: the first-cell height follows from the length of the shortest wall cell"
+TALL, TALL_AROUND = 0.75, 0.02
+"""First-cell heights from which lines of a march kink or bunch: of C grids, over the smallest wall cell, because
+lines from the trailing edge converge; of O grids, in chords.
+"""
 _TALLEST = 3000  # rows beyond which the power of the growth ratio would exceed the range of numbers
 STEEPEST = 1.3  # growth beyond which marched grids have larger angles than variational ones
 
 
 def first_cell(boundary: Boundary) -> float:
     """Return the default first-cell height of a C boundary, in the unit of the boundary."""
+    away = float(np.hypot(*(boundary.west[-1] - boundary.west[0])))
+    return _height(_smallest(boundary), away, boundary.nj)
+
+
+def too_tall(boundary: Boundary, height: float) -> bool:
+    """Return whether first cells of this `height`, in the unit of the boundary, are too high to be marched."""
+    if boundary.topology == "c":
+        return height > TALL * _smallest(boundary)
+    return height > TALL_AROUND * boundary.chord
+
+
+def _smallest(boundary: Boundary) -> float:
+    """Return the length of the smallest wall cell."""
     behind = boundary.wake
     wall = boundary.south[behind : boundary.ni - behind]
-    smallest = float(np.hypot(*np.diff(wall, axis=0).T).min())
-    away = float(np.hypot(*(boundary.west[-1] - boundary.west[0])))
-    return _height(smallest, away, boundary.nj)
+    return float(np.hypot(*np.diff(wall, axis=0).T).min())
 
 
 def first_cell_around_base(width: float, away: float, chord: float, ni: int, nj: int) -> float:

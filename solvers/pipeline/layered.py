@@ -12,6 +12,8 @@ from meshonet.geometry.arrays import Topology
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
+from meshonet.solvers.hyperbolic.default_spacing import too_tall
+from meshonet.solvers.hyperbolic.march import check_layers
 from meshonet.solvers.layers.first_cells import Heights
 from meshonet.solvers.pipeline.fallback import guard
 from meshonet.solvers.pipeline.first_cells import heights_of, y_plus_notes
@@ -52,9 +54,13 @@ class Layered(Wrapper):
                 "use {first_cell}",
                 parameter=f"spacing_{next(iter(self.request.sides))}",
             )
-        if self.request.at_walls and boundary.topology in self.marched:
-            return self._march(boundary)
         heights = heights_of(self.request, boundary)
+        if self.request.at_walls and boundary.topology in self.marched:
+            refuse(self.request.chosen, MARCHED)
+            given = self.request.method == "hyperbolic" or self.request.refine
+            if given or not too_tall(boundary, heights.south):
+                return self._march(boundary)
+            check_layers(self.request.height() or 0.0, self.request.growth)
         if heights.any and self.request.refine:
             raise InputError("{refine} with first cells of given heights", "use a finer {res} instead")
         if not heights.any and not self.request.slide:
@@ -62,7 +68,6 @@ class Layered(Wrapper):
         return self._in_layers(boundary, heights, start)
 
     def _march(self, boundary: Boundary) -> Solution:
-        refuse(self.request.chosen, MARCHED)
         height, of_heights = self.request.height() or 0.0, y_plus_notes(self.request, boundary)
         march = method_named("hyperbolic", wall_spacing=height, **self.request.rows_at_walls)
         solution = march.solve([boundary])[0]
@@ -80,6 +85,8 @@ class Layered(Wrapper):
         if heights.any:
             edges = solution.boundary or boundary
             slid = solution.boundary is not None
+            if boundary.wake:  # its first cells are not those of the result
+                solution = replace(solution, notes=())
             solution = spread(guard(solution, edges, allow_invalid=True), edges, heights)
             solution = solution if slid else _noted_lean(solution, boundary, heights)
         seconds = {**solution.seconds, "grid": perf_counter() - begun}

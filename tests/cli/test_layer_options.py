@@ -132,7 +132,8 @@ def test_growth_counts_rows_of_walls_along_eta_alone(meshonet: Meshonet) -> None
         (("--wall-spacing", "nan"), "--first-cell: a first cell of nan; give a positive height"),
         (("--constant-layers", "3"), "--constant-layers without a first cell; give --first-cell"),
         (("--wall-spacing", "1e-3", "--constant-layers", "0"), "constant-layers"),
-        (("--wall-spacing", "0.1", "--constant-layers", "200"), "200 layers of 0.1 reach the far field"),
+        (("--wall-spacing", "0.02", "--constant-layers", "1000"), "1000 layers of 0.02 reach the far field"),
+        (("--wall-spacing", "0.1", "--constant-layers", "200"), "100 nodes off south are too few for layers"),
         (("--wall-spacing", "1e-5", "--res", "90x10"), "10 rows of nodes cannot reach the far field growing"),
     ],
 )

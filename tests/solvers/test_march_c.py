@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from march_shapes import deviation, first_cells
 
-from meshonet import infer, quality
+from meshonet import GridRequest, infer, make_grid, quality, read
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
@@ -96,3 +96,24 @@ def test_long_cells_at_the_end_of_a_wake_are_orthogonal_for_flow_solvers(
     figures = {result.check.figure: result.figure.value for result in report.profile.results}
     assert figures["non_orthogonality"] < (25.0 if base is None else 65.0)
     assert figures["box_ratio"] < 3000.0
+
+
+@pytest.mark.parametrize("first", [0.003, 0.01, 0.03, 0.1])
+@pytest.mark.parametrize("growth", [None, 1.15])
+def test_first_cells_longer_than_the_smallest_wall_cell_leave_no_kink_behind_the_edge(
+    first: float, growth: float | None
+) -> None:
+    """Marched with these first cells, lines from the trailing edge converge at up to 180 degrees."""
+    sampling = Sampling(topology="c")
+    result = make_grid(read("naca:2412"), GridRequest(sampling=sampling, first_cell=first, growth=growth))
+    assert result.quality["max_angle"].max < 109.0
+    nodes = result.grid.nodes
+    assert np.hypot(*np.moveaxis(nodes[:, 1] - nodes[:, 0], -1, 0)) == pytest.approx(first, rel=1e-8)
+    (note,) = (note for note in result.notes if "first" in note)
+    assert note.startswith(f"first cells {first:g} off south")
+
+
+def test_an_o_grid_with_first_cells_of_a_twentieth_chord_grows_evenly() -> None:
+    cells = np.linalg.norm(np.diff(infer("naca:0012", first_cell=0.05).nodes, axis=1), axis=-1)
+    assert cells[:, 0] == pytest.approx(0.05, rel=1e-8)
+    assert (cells[:, 1:] < 1.06 * cells[:, :-1]).all()
