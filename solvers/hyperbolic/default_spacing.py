@@ -21,9 +21,7 @@ MOST = 0.25  # the same where rows are few, so that they grow by no more than `G
 GROWTH = 1.2  # largest ratio of neighbouring rows
 CHOSEN = "{first_cell} is not given: the first-cell height follows from the length of the shortest wall cell"
 TALL, TALL_AROUND = 0.75, 0.02
-"""First-cell heights from which lines of a march kink or bunch: of C grids, over the smallest wall cell, because
-lines from the trailing edge converge; of O grids, in chords.
-"""
+"""First-cell heights above which marched lines bunch: C grids, per smallest wall cell; O grids, in chords."""
 _TALLEST = 3000  # rows beyond which the power of the growth ratio would exceed the range of numbers
 STEEPEST = 1.3  # growth beyond which marched grids have larger angles than variational ones
 
@@ -35,7 +33,7 @@ def first_cell(boundary: Boundary) -> float:
 
 
 def too_tall(boundary: Boundary, height: float) -> bool:
-    """Return whether first cells of this `height`, in the unit of the boundary, are too high to be marched."""
+    """Return whether first cells of `height`, in the unit of the boundary, are too high to be marched."""
     if boundary.topology == "c":
         return height > TALL * _smallest(boundary)
     return height > TALL_AROUND * boundary.chord
