@@ -37,22 +37,22 @@ HEAD = """# Grids in torch: accuracy and time
 
 <!-- made by python benchmarks/bench_layers.py; rows of about 32 grids with --count 32 -->
 
-Use this page to find how exact and how fast [`meshonet.layer`](../guide/layers.md) generates grids in torch.
-The grids are compared with those of the compiled solvers. CPU times are for one thread.
+Use this page to find how exact and how fast [`meshonet.layer`](../guide/layers.md) generates grids in torch,
+compared with the compiled solvers. CPU times are for one thread.
 
 The shapes are random: airfoils for `conformal`, four-sided domains for all other functions. The boundary
 nodes are given in double precision (*64 bits*), or rounded to single precision (*32 bits*). The compiled
 solvers get the same boundary nodes.
 
 - *distance*: largest distance between a node of `meshonet.layer` and the same node of the compiled solver,
-  relative to the domain size.
+  divided by the largest extent of the grid.
 - *folded*: grids of `meshonet.layer` with folded cells. *folded in torch only*: of these, the grids for which
   the compiled solver folds no cells.
 - *CPU ms*: CPU time to compute a grid, in milliseconds.
 - *gradient*: CPU time to differentiate a function of the grid by the boundary nodes, divided by the CPU time
   to compute the grid.
 
-Airfoils without a conformal map are left out. Rows with about 30 grids use the first 32 shapes only.
+Of the 1000 shapes (32 in two rows), invalid domains and airfoils without a conformal map are left out.
 """
 
 TAIL = """
@@ -61,8 +61,7 @@ TAIL = """
 - `meshonet.layer` folds no cells that the compiled solvers do not fold. `solve-pde` repairs folded cells;
   `meshonet.layer` does not.
 - A gradient takes 0.15 to 1.8 times the CPU time of the grids.
-- The compiled `variational` and `conformal` solvers were converged for this table; in `solve-pde` they stop
-  earlier.
+- For this table, the compiled `variational` and `conformal` solvers iterated longer than in `solve-pde`.
 """
 
 FUNCTIONS = "transfinite,winslow,variational,conformal"
