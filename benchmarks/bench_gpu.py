@@ -43,10 +43,10 @@ grids of the CPU. [Threads and GPUs](../guide/threads-and-gpu.md) explains how t
 `python benchmarks/bench_gpu.py --page docs/benchmarks/gpu.md` measures for at most eight minutes and writes
 this page, with three tables:
 
-- **Layers**: the solvers `winslow` and `variational` of `meshonet.layer`, and the network `quad-general`. The
-  boundaries are already in the memory of the GPU. *coarse=65*: the solver runs on 65 x 65 nodes, and its grid
-  is interpolated. *with gradients*: grids per second if gradients are computed too. *same bits*: whether two
-  runs give bitwise equal nodes.
+- **Layers** for [torch](../guide/layers.md): the solvers `winslow` and `variational`, and the network
+  `quad-general`. The boundaries are already in the memory of the GPU. *coarse=65*: the solver runs on 65 x 65
+  nodes, and its grid is interpolated. *with gradients*: grids per second if gradients are computed too.
+  *same bits*: whether two runs give bitwise equal nodes.
 - **Operators**: `infer --device cuda` with three networks.
 - **Training**: shapes per second, with and without the options `--amp` and `--compile`. The time of compiling
   does not count. Relative values are relative to training without these options.

@@ -42,8 +42,8 @@ grids, with one thread.
 
 TIME = """## Time
 
-The domain has slightly curved faces; strongly curved faces take more time. The time to copy the nodes in
-memory is given for comparison.
+The domain has slightly curved faces; strongly curved faces take more time. A copy of the nodes is given
+for comparison.
 """
 
 QUALITY = """## Quality
@@ -66,7 +66,7 @@ A 3DMeshNet (`train --model meshnet`) is trained anew for each domain, here for 
 *Quality*, with {epochs} steps (default 15,000). The CPU time includes the training.
 
 - *3DMeshNet*: the given boundary nodes replace the predicted ones (`infer --answer pasted`). The largest
-  error of a predicted boundary node is {off} % of the domain size (median).
+  error of a predicted boundary node, median over the domains, is {off} % of the domain size.
 - *3DMeshNet, repaired*: folded cells are repaired too, as by `infer` without options.
 """
 

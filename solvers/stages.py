@@ -28,7 +28,7 @@ def added(
 
 @dataclass(frozen=True)
 class Stage:
-    """A stage of a computation that has started or advanced."""
+    """Progress of one stage of a computation, which watchers get when the stage starts or advances."""
 
     name: str  # as in `Timings`
     unit: str = ""  # name of a step, such as level

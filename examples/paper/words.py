@@ -58,7 +58,7 @@ QUALITY = """
 ## Quality, case by case
 
 Each case has 30 training shapes and 6 test shapes of 101 x 101 nodes. The networks learn from the grids of
-the PDE solver. All values are for test shapes.
+the PDE solver. Medians, means, maxima and sums are taken over the test shapes.
 
 In the PDE solver's grids of the wrench, 4 to 18 cells at the two corners of 270 degrees were folded. They
 were repaired before the training, by moving all nodes within 12 cells of a folded cell. The number 12 was
@@ -88,8 +88,8 @@ PHYSICS = """
 ## Physics-informed networks
 
 Each of these networks is trained for one geometry, the arch of [mesh refinement](#mesh-refinement) with 101 x
-101 nodes. The network must be trained anew for each geometry, so the training time is the time to generate a
-grid. The paper says without figures that such networks are as good as the PDE solver but do not generalise.
+101 nodes. As every geometry needs a training, the training time is the time to generate a grid. The paper
+says without figures that such networks are as good as the PDE solver but do not generalise.
 """
 
 TIME = """
@@ -110,9 +110,9 @@ SETTINGS = """
 ## Training
 
 The tables of quality are for networks trained for 15,000 epochs of 30 shapes, `meshonet-hard` on the airfoil
-for 3,000 epochs. The optimiser is Adam with a learning rate of 0.001, which is multiplied by 0.9 after each
-fifteenth of the epochs. A step uses 30 shapes, 1,000 random points inside and 200 on the boundary. The
-training of `meshonet` minimises 900 times the mean square error inside plus 1,000 times that on the boundary.
+for 3,000 epochs. Adam's learning rate starts at 0.001 and is multiplied by 0.9 after each of 15 equal parts
+of the training. A step uses 30 shapes, 1,000 random points inside and 200 on the boundary. The training of
+`meshonet` minimises 900 times the mean square error inside plus 1,000 times that on the boundary.
 
 On wrench and airfoil `meshonet-hard` has [other settings](../../theory/paper-models.md#meshonet-hard).
 """

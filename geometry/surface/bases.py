@@ -57,8 +57,8 @@ class _Edge(NamedTuple):
 def with_bases(patches: Sequence[Floats]) -> tuple[list[Floats], list[int], tuple[str, ...]]:
     """Return `patches` (ni, nj, 3), followed by further patches (bases) that close open trailing edges.
 
-    Also return the index of a patch beside each base, and notes. Raises InputError: a trailing edge whose two
-    ends have different numbers of cells across its thickness.
+    Also return the index of a patch beside each base, and notes. Raises InputError: a trailing edge that has
+    different numbers of cells across its thickness at its two spanwise ends.
     """
     nodes, lattices = merged(patches)
     sides = _open_sides(patches, nodes, lattices)

@@ -47,8 +47,8 @@ class TrainOptions:
         "others 0.001]",
     )
     schedule: Literal["cosine", "step"] | None = _option(
-        help="Decrease of the learning rate. cosine: to zero. step: by the factor 0.9 after each fifteenth "
-        "of the training. [default: cosine for strip and quad, step for others]",
+        help="Decrease of the learning rate. cosine: to zero. step: times 0.9 after each of 15 "
+        "equal parts of the training. [default: cosine for strip and quad, else step]",
     )
     points: str | None = _option(
         metavar="N|all", help="Number of random grid points for each step, a sixth of them on the boundary. "

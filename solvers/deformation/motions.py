@@ -86,7 +86,7 @@ def _frames(corners: Floats) -> Floats:
 
 
 def affine(places: Floats, moved: Floats, turns: Floats) -> Floats:
-    """Return for each node the displacement a + B x of points x that move with it, as an array (d + d², n).
+    """Return coefficients (d + d², n) of the displacement a + B x of the points x that move with each node.
 
     A column has the vector a, then the rows of the matrix B. `places` and `moved` (n, d) are the old and new
     positions of the nodes, `turns` (n, d, d) their rotation matrices minus the identity.

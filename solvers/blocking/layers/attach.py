@@ -31,7 +31,7 @@ class Rows:
 
 
 def attach(layout: Layout, domain: Domain, rows: Sequence[Rows]) -> Layout:
-    """Return the layout extended beyond some boundary loops, by a new block at each block side on them.
+    """Return the layout, extended by a new block at each block side on the boundary loops in `rows`.
 
     For each such loop, `rows` has the grid lines in the new blocks. `domain` is the domain of the result.
     """

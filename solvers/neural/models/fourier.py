@@ -164,7 +164,7 @@ class KNO(AlongXi):
         return xp.tanh(h + dense(xp, w, "local", g))
 
     def penalty(self, xp: Any, w: Weights, inputs: Weights) -> Any:
-        """Return `reconstruction` times the mean square error of inputs reconstructed from observables."""
+        """Return the mean square error of the reconstructed inputs, times the weight `reconstruction`."""
         edges = inputs["edges"]
         observables = xp.tanh(dense(xp, w, "lift", edges))
         return self.reconstruction * ((dense(xp, w, "inputs", observables) - edges) ** 2).mean()
