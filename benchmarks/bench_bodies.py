@@ -168,9 +168,9 @@ and at 15 chords. `quad-general` is the network for four-sided domains.
 HOLES = """
 ## Plates with a hole, from the MeshONet paper, 101 x 101
 
-The shapes are square plates of side 2 with a round hole of radius 0.35. The height of the hole is measured
-from the middle of the plate. *MeshONet* is the network of the paper, *MeshONet-hard* a variant of it; both
-were [trained](paper/index.md) on 30 such plates, `hole-winslow` on none.
+The shapes are square plates of side 2 with a round hole of radius 0.35. The *height* of its centre is 0 at
+the middle of the plate. *MeshONet* is the network of the paper, *MeshONet-hard* a variant of it. Both were
+[trained](paper/index.md) on 30 such plates, `hole-winslow` on none.
 
 The first table gives the median distance to Winslow's solution and, in brackets, the number of grids with
 folded cells.
@@ -214,8 +214,8 @@ TAIL = """
 - **Time**: `hole-o --polish 5` takes about three times as long as Winslow's solver, and a third of the time
   of the variational solver.
 - **Limits**: around bodies that are not compact, such as clips, crescents and angle sections, the grids of
-  `hole-o` often have folded cells without polish. With `--polish 5` the grids around 25 such bodies and thin
-  plates were all valid.
+  `hole-o` often have folded cells without polish. With `--polish 5` all 25 grids around crescents, angle
+  sections and thin plates were valid.
 """
 
 if __name__ == "__main__":

@@ -60,8 +60,8 @@ The first-cell height is {first:g} chords, and `--growth` is 1.2.
 RANDOM = """
 ## Random rows
 
-The blade of an axial row is interpolated between two real airfoils, one at the hub and one at the casing.
-These properties are random:
+The blade of an axial row is interpolated between two real airfoils, at hub and casing. These
+properties are random:
 
 | property | range |
 | --- | --- |
@@ -72,7 +72,8 @@ These properties are random:
 | tip gap | up to 3 % of the span in two of three rows; the others have no gap |
 
 Radial rows are centrifugal impellers, radial turbines, mixed-flow pumps and vaned diffusers. All grids are
-made with `--cells {cells}` and first-cell heights of {first:g} chords. Most grids need, and have, more cells.
+made with `--cells {cells}` and first-cell heights of {first:g} chords. Most grids have more cells, because
+the layers at the walls need them.
 
 | rows | valid grids | nodes, median | scaled Jacobian: median / worst \
 | largest angle, degrees: median / worst | first-cell error \
@@ -80,7 +81,7 @@ made with `--cells {cells}` and first-cell heights of {first:g} chords. Most gri
 | --- | --- | --- | --- | --- | --- | --- | --- |
 """
 TAIL = """
-- Radial rows have larger angles and larger growth than axial rows.
+- Radial rows have larger angles and growth than axial rows.
 - Nodes on periodic sides match: their largest distance after a rotation by one pitch is {periodic:g}.
 """
 

@@ -22,9 +22,9 @@ EXAMPLES = (
 _option = o.option_of(o.METHOD)
 
 AUTO = (
-    "hyperbolic outside a body or surface with a first cell, and for C grids unless {coarse}, {refine}, "
-    "{tol}, {max_cycles} or {initial} is given; variational for multi-block grids and inside six faces; "
-    "else winslow"
+    "hyperbolic outside a body or surface with a first cell. C grids without one: hyperbolic unless "
+    "{coarse}, {refine}, {tol}, {max_cycles} or {initial} is given. Multi-block grids and six faces: "
+    "variational. Else winslow"
 )
 SOLVERS = {name: row.summary for name, row in METHODS.items() if row.solves} | {"auto": AUTO}
 if TYPE_CHECKING:
