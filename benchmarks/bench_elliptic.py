@@ -67,7 +67,7 @@ CONTROLS = """
 The control functions of `--method thomas-middlecoff` continue the node distribution of the sides into the
 interior.
 
-- *prescribed first-cell height*: height at the south side, given by the nodes on the west and east sides.
+- *prescribed first-cell height*: first spacing of the nodes on the west and east sides.
 - *median first-cell height*: median over the cells at the south side.
 """
 CHANNELS_NOTE = """
@@ -160,7 +160,7 @@ def conformal(n: int) -> Floats:
 def order() -> Iterator[str]:
     """Yield errors against the conformal map, and the fitted slope."""
     yield "\n## Order of convergence\n"
-    yield "The exact grid is a rectangle mapped by exp ζ. The error is the largest error of a coordinate.\n"
+    yield "The exact grid is polar: radii exp ξ, angles η. The error is the largest error of a coordinate.\n"
     yield "| nodes | error |\n| --- | --- |"
     counts, errors = np.array([17, 33, 65, 129, 257]), []
     for n in counts.tolist():

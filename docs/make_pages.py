@@ -50,7 +50,7 @@ ERRORS_HEAD = """# Held-out errors of the shipped models
 
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
-Look here for the accuracy of the neural networks (models) that are part of meshonet. The errors are distances
+Look here for the accuracy of the neural networks (models) in meshonet. The errors are distances
 between grids of a model and grids of a solver, on *held-out* shapes, which were not used in training.
 `meshonet models NAME` prints the same errors. The training parameters are in [shipped
 models](../reference/models.md).
@@ -238,10 +238,10 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     counts, domains = ("65 x 33", "domains around bodies") if bodies else ("33 x 33", "four-sided domains")
     middle = "the middle of the body" if bodies else "the mean of the boundary nodes"
     lines = [
-        f"The held-out samples are {figures['domains']} random {domains}. One network predicts both the",
-        f"variational grid and Winslow's grid, on {counts} nodes and without solver iterations.",
-        "The *error* is the RMS distance of the nodes from those of the solver's grid, divided by the RMS",
-        f"distance of the solver's nodes from {middle}.\n",
+        f"The held-out samples are {figures['domains']} random {domains}. One network predicts the",
+        f"[variational grid](../theory/variational.md) and Winslow's grid, on {counts} nodes, without solver",
+        "iterations. The *error* is the RMS distance of the nodes from those of the solver's grid, divided",
+        f"by the RMS distance of the solver's nodes from {middle}.\n",
         "| predicted grid | error, median | error, 90th percentile | initial grid: error, median | valid |",
         "| --- | --- | --- | --- | --- |",
     ]
@@ -255,9 +255,9 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "Means and maxima of the cells' largest angles are smaller in variational grids than in Winslow's.\n"
-        f"The network reaches {100 * gain['mean_gain']:.0f} % of this reduction for the mean, "
-        f"{100 * gain['max_gain']:.0f} % for the maximum.",
+        "The cells' largest angles decrease from the solver's Winslow grid to its variational grid. The\n"
+        f"network's variational grid achieves {100 * gain['mean_gain']:.0f} % of this decrease in the mean "
+        f"over cells, {100 * gain['max_gain']:.0f} % in the maximum.",
     ]
     return lines
 
