@@ -46,21 +46,21 @@ solvers get the same boundary nodes.
 
 - *distance*: largest distance between a node of `meshonet.layer` and the same node of the compiled solver,
   divided by the largest extent of the grid.
-- *folded*: grids of `meshonet.layer` with folded cells. *folded in torch only*: of these, the grids for which
-  the compiled solver folds no cells.
+- *folded*: number of grids of `meshonet.layer` with folded cells. *folded in torch only*: of these, grids
+  without folded cells from the compiled solver.
 - *CPU ms*: CPU time to compute a grid, in milliseconds.
-- *gradient*: CPU time to differentiate a function of the grid by the boundary nodes, divided by the CPU time
-  to compute the grid.
+- *gradient*: CPU time to differentiate a function of the grid by the boundary nodes, divided by *CPU ms*.
 
-Of the 1000 shapes (32 in two rows), invalid domains and airfoils without a conformal map are left out.
+A row starts from 1000 shapes, the 32-bit rows of `variational` and `conformal` from 32. Invalid domains
+and airfoils without a conformal map are left out.
 """
 
 TAIL = """
-- In double precision, the grids agree with those of the compiled solvers to 2e-11. In single precision, they
-  agree to the rounding error of the nodes, 6e-8.
+- In double precision, the grids agree with those of the compiled solvers to 2e-11; in single precision, to
+  the rounding error of the nodes, 6e-8.
 - `meshonet.layer` folds no cells that the compiled solvers do not fold. `solve-pde` repairs folded cells;
   `meshonet.layer` does not.
-- A gradient takes 0.15 to 1.8 times the CPU time of the grids.
+- A gradient takes 0.15 to 1.8 times the CPU time of the grid.
 - For this table, the compiled `variational` and `conformal` solvers iterated longer than in `solve-pde`.
 """
 

@@ -51,8 +51,8 @@ ERRORS_HEAD = """# Held-out errors of the shipped models
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
 Look here for the accuracy of the neural networks (models) in meshonet. The errors are distances
-between grids of a model and grids of a solver, on *held-out* shapes, which were not used in training.
-`meshonet models NAME` prints the same errors. The training parameters are in [shipped
+between grids of a model and grids of a solver, on *held-out* shapes (not used in training).
+`meshonet models NAME` prints these errors. The training parameters are in [shipped
 models](../reference/models.md).
 
 In the tables, the *initial grid* or *base* is the grid that a network corrects. *Valid*: no folded cells.
@@ -255,8 +255,8 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "The cells' largest angles decrease from the solver's Winslow grid to its variational grid. The\n"
-        f"network's variational grid achieves {100 * gain['mean_gain']:.0f} % of this decrease in the mean "
+        "The cells' largest angles are smaller in the solver's variational grid than in Winslow's grid. The\n"
+        f"network's variational grid achieves {100 * gain['mean_gain']:.0f} % of this reduction in the mean "
         f"over cells, {100 * gain['max_gain']:.0f} % in the maximum.",
     ]
     return lines

@@ -71,8 +71,8 @@ def convert(
     ),
     copies: str | None = _option(
         metavar="K[xL]", help="Join K copies of a periodic grid, e.g. passages of a blade row. KxL joins K "
-        "copies along the first period and L along the second, in the order of the quality report. [default: "
-        "1]",
+        "copies along the first period and L along the second; meshonet quality lists periods in this "
+        "order. [default: 1]",
     ),
     revolve: o.Revolve = None,
     axis: o.Axis = None,

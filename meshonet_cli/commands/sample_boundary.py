@@ -47,7 +47,7 @@ def sample_boundary(
     ),
     sensors: int | None = _option(
         metavar="M", min=2, help="Store M boundary nodes of each shape in the .h5 file, in the array "
-        "sensors, as the input of neural operators. [default: no sensors]",
+        "sensors, as input of neural operators. [default: no sensors]",
     ),
 ) -> int:
     """Place nodes on the four edges of a boundary.

@@ -22,7 +22,7 @@ EXAMPLES = (
 _option = o.option_of(o.METHOD)
 
 AUTO = (
-    "hyperbolic outside a body or surface with a first cell. C grids without one: hyperbolic unless "
+    "hyperbolic outside a body or surface if a first-cell height is given, and in all other C grids unless "
     "{coarse}, {refine}, {tol}, {max_cycles} or {initial} is given. Multi-block grids and six faces: "
     "variational. Else winslow"
 )

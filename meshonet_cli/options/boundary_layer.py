@@ -9,7 +9,7 @@ _option = option_of(BOUNDARY_LAYER)
 
 # fmt: off
 WallAngle = Annotated[float | None, _option(
-    metavar="DEGREES", help="Angle in degrees between grid lines and walls, for --method steger-sorenson. It "
+    metavar="DEGREES", help="Angle between grid lines and walls, for --method steger-sorenson. It "
     "applies to sides with a first cell; if there are none, to south and north, or to the wall of a body. "
     "[default: 90]",
 )]
@@ -22,10 +22,10 @@ Slide = Annotated[bool | None, _option(
 FirstCell = Annotated[str | None, _option(
     "--first-cell", "--wall-spacing", metavar="H|WALL=H,...", help="Height of the first cell at walls, in "
     "the unit of the input. In a one-block grid around a body the unit is the chord of an airfoil, or the "
-    "largest extent of another body. WALL=H,WALL=H applies to the named walls only. H applies to the body; "
-    "to south, north and sides named wall of a four-sided domain; to the holes of a multi-block grid. H "
-    "never applies to sides named inlet, outlet, axis, symmetry or farfield. If a multi-block grid has such "
-    "sides but no holes, H applies to all other sides. [default: no layers]",
+    "largest extent of another body. WALL=H,WALL=H applies to the named walls only. H applies to the body "
+    "or the holes; in a four-sided domain to south, north and sides with 'wall' in the name; never to sides "
+    "named inlet, outlet, axis, symmetry or farfield. If a multi-block grid has such sides but no holes, H "
+    "applies to all other sides. [default: no layers]",
 )]
 YPlus = Annotated[float | None, _option(
     metavar="Y", help="y+ at the height of the first cell, instead of --first-cell; y+ at the cell "

@@ -38,8 +38,8 @@ class BlockOptions:
     )
     layout: str | None = _option(
         metavar="LAYOUT.json", help="Use the blocks in this file, which meshonet layout wrote for this "
-        "domain or a similar one. For a grid with layers, write the file with a first cell too. [default: "
-        "new blocks]",
+        "domain or a similar one. For a grid with layers, give meshonet layout a first-cell height too. "
+        "[default: new blocks]",
     )
     periodic: list[str] | None = _option(
         metavar="SIDE,SIDE", help="Make the nodes of two named sides of the outer boundary match. One side "

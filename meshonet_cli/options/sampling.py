@@ -38,15 +38,15 @@ class SamplingOptions:
     topology: TopologyName = _option(
         default="auto", help="Topology of the grid. quad: four-sided. o: around a body. c: around an airfoil "
         "and its wake; NI includes both sides of the wake. auto: o around airfoils, but c if the trailing "
-        "edge is sharp and there is a first cell (not in tfi); o around outlines with fewer than four convex "
-        "corners; else quad.",
+        "edge is sharp and a first-cell height is given (not in meshonet tfi); o around outlines with "
+        "fewer than four convex corners; else quad.",
     )
     spacing: SpacingName = _option(
         default="auto", help="Distribution of the nodes along walls. uniform: equal cells. cosine, tanh: "
         "smaller cells at both ends of a side, or at leading and trailing edge. curvature: smaller cells "
         "also at bends. conformal: equal steps on the circle to which a conformal map takes the body. auto: "
-        "curvature in C grids and with a first cell (not in tfi); else conformal around airfoils and smooth "
-        "bodies; else uniform.",
+        "curvature in C grids and, except in meshonet tfi, if a first-cell height is given; else conformal "
+        "around airfoils and smooth bodies; else uniform.",
     )
     le_spacing: float | None = _option(
         metavar="H", help="Length of the wall cells at the leading edge, in chords. [default: set by "
@@ -58,12 +58,12 @@ class SamplingOptions:
     )
     te: Literal["auto", "exact", "round", "wedge"] = _option(
         default="auto", help="Shape of a blunt trailing edge. exact: unchanged. round: corners rounded. "
-        "wedge: closed by a wedge. auto: exact in O grids; exact in marched C grids unless the base is "
-        "only a few first cells high; else wedge.",
+        "wedge: closed by a wedge. auto: exact in O grids, and in marched C grids if the base is higher "
+        "than 0.005 chords or 10 first cells; else wedge.",
     )
     far_field: float | None = _option(
         metavar="R", help="Smallest distance of the far field from the middle of the body, in chords of a "
-        "single airfoil, else in units of the largest extent of all bodies together; for a marched volume in "
+        "single airfoil, else in largest extents of all bodies together; for a marched volume in "
         "the unit of its surface. For lift and drag use 100 or more. [default: 15; for a volume 15 times the "
         "largest extent of its surface]",
     )
@@ -77,11 +77,11 @@ class SamplingOptions:
     )
     base: float | None = _option(
         metavar="T", help="Open a trailing edge thinner than T chords to this thickness. --te applies to the "
-        "base that results. [default: unchanged]",
+        "opened base. [default: unchanged]",
     )
     base_nodes: int | None = _option(
         metavar="N", help="Number of nodes on the base of a blunt trailing edge, including its two corners; "
-        "odd for an O grid. [default: derived from the base height and the cells next to it]",
+        "odd for an O grid. [default: from the base height and the cells next to it]",
     )
     smooth: float | None = _option(
         metavar="TOL", help="Replace noisy or rounded airfoil coordinates by splines within TOL chords of "
