@@ -213,9 +213,9 @@ TAIL = """
 - **Quality**: all 44 grids of `hole-o --polish 5` are valid. The gain in mean angle is 93 to 96 %.
 - **Time**: `hole-o --polish 5` takes about three times as long as Winslow's solver, and a third of the time
   of the variational solver.
-- **Limits**: around bodies that are not compact, such as clips, crescents and angle sections, the grids of
-  `hole-o` often have folded cells without polish. With `--polish 5` all 25 grids around crescents, angle
-  sections and thin plates were valid.
+- **Limits**: around bodies that are not compact, such as crescents and L-shaped profiles, the grids of
+  `hole-o` often have folded cells without polish. With `--polish 5` all 25 grids around crescents, L-shaped
+  profiles and thin plates were valid.
 """
 
 if __name__ == "__main__":

@@ -232,7 +232,7 @@ method](../start/choosing-a-method.md).
 
 Measured on {machine}.
 
-Rows of the tables; bold rows are `infer` and the networks:
+Rows of the tables (bold: `infer` and the networks):
 
 | row | how the grid is generated |
 | --- | --- |
@@ -244,15 +244,15 @@ Rows of the tables; bold rows are `infer` and the networks:
 | **airfoil-o** | the network `airfoil-o` alone, which predicts Winslow's O grid |
 | **airfoil-o, polished** | `airfoil-o`, then iterations for Winslow's equations until nodes hardly move |
 | **quad-winslow** | network for Winslow's grid of a four-sided domain; *2 cycles*: then 2 multigrid cycles |
-| **quad-general** | network for the variational grid of a four-sided domain; *5 steps*: then 5 iterations |
+| **quad-general** | network for variational grids of four-sided domains; *5 steps*: and 5 solver iterations |
 
 Terms and columns:
 
 - *procedural airfoils*: random airfoils that a formula generates; none was used to train a network.
   *spacing*: how the wall nodes are distributed (`--spacing`).
-- *(60)* in a heading: number of shapes. The tables leave out shapes without a converged solution of Winslow's
-  equations.
-- *grids without folded cells*: share of the grids, before repair.
+- *(60)* in a heading: number of shapes, from which the table then leaves out those without a converged
+  solution of Winslow's equations.
+- *grids without folded cells*: share of grids, before repair.
 - *distance*: root mean square distance of the nodes from those of a reference grid, divided by the root mean
   square distance of the reference nodes from the centre of the shape.
 - *reference grid*: Winslow's converged solution, extrapolated from two grids; the finer has 2 or 4 times as
@@ -263,7 +263,7 @@ Terms and columns:
 - *largest angle*, *mean angle*: each cell has a largest angle. The columns give the maximum and the mean of
   these angles over the cells. *relative to Winslow*: divided by the value of Winslow's converged grid on the
   same boundary. Smaller is better.
-- *CPU time*: time to generate the grid, without reading, writing and repair; median over the shapes.
+- *CPU time*: to generate the grid, without reading, writing and repair; median over the shapes.
 """
 FAMILIES_NOTE = """
 ## The six families of the MeshONet paper, 101x101

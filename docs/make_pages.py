@@ -24,18 +24,18 @@ MODELS_HEAD = """# Shipped models
 
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
-Look here for the training parameters of the models (neural networks that generate grids) that are part of
-meshonet. [Neural operators](../theory/operators.md) helps to choose a model, and [held-out
+Look here for the training parameters of meshonet's models, the neural networks that generate grids.
+[Neural operators](../theory/operators.md) helps to choose a model, and [held-out
 errors](../benchmarks/models.md) gives the accuracy of each. `meshonet models NAME` prints the same data.
 
-Each model is a safetensors file in `solvers/neural/pretrained/`. The metadata of the file contain these data.
+Each model is a safetensors file in `solvers/neural/pretrained/`. Its metadata contain these parameters.
 `make train` repeats the training.
 
 | training parameter | meaning |
 | --- | --- |
 | `datasets` | files with the training grids, which a solver made |
 | `strips`, `domains` | number of samples (airfoils or domains) in the datasets, held-out ones included |
-| `held_out` | number of samples that are used only to measure errors, not for training |
+| `held_out` | number of samples used to measure errors, not for training |
 | `epochs`, `batch`, `seed` | passes over the training samples, samples per step, seed of the random numbers |
 | `rate`, `warm_up` | largest learning rate, reached after `warm_up` steps; then the rate falls as a cosine |
 | `weight_decay`, `clip` | weight decay of AdamW, and the largest norm of the gradient |
@@ -44,7 +44,7 @@ Each model is a safetensors file in `solvers/neural/pretrained/`. The metadata o
 | `widths` | U-Net: channels on each level, in units of eight, the finest level first |
 | `blocks` | U-Net: residual blocks on each level, on the way down and again on the way up |
 | `layers`, `width`, `modes` | Fourier neural operator: layers, channels, Fourier modes in a layer |
-| `basis` | Fourier neural operator: its output is a sum of this many functions of η |
+| `basis` | Fourier neural operator: it sums this many functions of the coordinate away from the wall |
 """
 ERRORS_HEAD = """# Held-out errors of the shipped models
 
@@ -61,8 +61,8 @@ C_GRIDS = """## C grids: no model
 
 meshonet has no model for C grids, because marching gives better C grids than every network that was tested
 ([measurements](../benchmarks/body-operator.md#c-grids-no-model)). The C grids that `quad-general` predicts
-are worse than those of transfinite interpolation. `airfoil-o` assumes that the grid is periodic in ξ, which
-a C grid is not.
+are worse than those of transfinite interpolation. `airfoil-o` assumes that the grid is periodic along the
+wall, which a C grid is not.
 
 `meshonet infer` generates C grids by [marching](../theory/marching.md) from the wall and the wake, or by the
 variational method if marching fails. For C grids the options `--model`, `--polish` and `--device` are errors.

@@ -5,10 +5,10 @@ HEAD = """# A comparison that is open to other programs
 <!-- made by python benchmarks/yardstick entries build/yardstick --page docs/benchmarks/yardstick.md -->
 
 Use this page to compare your program for structured grids with Gmsh and meshonet, on random shapes to which
-no program was adapted. The scripts in `benchmarks/yardstick` draw the shapes and judge the grids; they need
-only NumPy and h5py.
+no program was adapted. The scripts in `benchmarks/yardstick` generate the shapes and measure the quality of
+the grids. They need only NumPy and h5py.
 
-There are {count} shapes of each kind, drawn with seed {seed}. All boundary nodes are given.
+There are {count} random shapes of each kind, from seed {seed}. All boundary nodes are given.
 
 | kind | nodes | shape |
 | --- | --- | --- |
@@ -24,11 +24,11 @@ There are {count} shapes of each kind, drawn with seed {seed}. All boundary node
 
 In the tables, the first six kinds are *four-sided*, the last three *body*.
 
-- `infer --model NAME`: a [network shipped with meshonet](models.md).
-- *grids*: number of shapes for which the program makes a grid.
-- *folded*: number of grids with folded cells and, in brackets, number of folded cells.
-- *largest angle*: largest cell corner angle of a grid, mean / maximum over the grids.
-- *smallest angle*: smallest cell corner angle of all grids.
+- `infer`: the default method; with `--model NAME`, a [network](models.md). `tfi`: transfinite interpolation.
+- *grids*: shapes for which the program makes a grid.
+- *folded*: grids with folded cells and, in brackets, number of folded cells.
+- *largest angle*: largest corner angle of a grid, mean / maximum over the grids.
+- *smallest angle*: smallest corner angle of all grids.
 - *skew*: largest deviation of the corner angles of a cell from 90 degrees, mean over all cells.
 - *boundary error*: largest distance of a boundary node from its given position, relative to the size of the
   shape.
@@ -68,7 +68,7 @@ of the MeshONet paper](paper/index.md) gives errors after longer training.
 
 ## How to enter
 
-1. Draw the shapes.
+1. Generate the shapes.
 
        python benchmarks/yardstick shapes build/yardstick --seed 1
 
@@ -80,7 +80,7 @@ of the MeshONet paper](paper/index.md) gives errors after longer training.
    With the option `--plot3d` each kind is also a folder `KIND` with a 2D ASCII Plot3D file for each shape.
    The four blocks of the file are the sides.
 
-2. Run your program. It gets two paths: the boundaries to read, and the grids to write.
+2. Run your program. It gets two paths: boundaries to read and grids to write.
 
        python benchmarks/yardstick run build/yardstick 'My program 1.0' 'myprogram --in {boundaries} --out {grids}'
 
@@ -88,7 +88,7 @@ of the MeshONet paper](paper/index.md) gives errors after longer training.
    files with the names of the shapes. Leave out shapes for which your program makes no grid. The script
    `benchmarks/yardstick/gmsh_transfinite.py` is an example.
 
-3. Judge all grids in the folder. The printed rows have the columns of the tables above.
+3. Measure all grids in the folder. The printed rows have the columns of the tables above.
 
        python benchmarks/yardstick judge build/yardstick
 

@@ -5,10 +5,10 @@ from typing import Any
 from meshonet.solvers.neural.registry import described, shipped
 
 _USES = {
-    "airfoil-o": ("O grids around airfoils, conformal", "10 ms at 800 x 800"),
-    "hole-o": ("O grids around bodies with corners, variational", "3 ms at 129 x 65"),
+    "airfoil-o": ("Winslow's O grids around airfoils", "10 ms at 800 x 800"),
+    "hole-o": ("variational O grids around bodies with corners", "3 ms at 129 x 65"),
     "hole-winslow": ("Winslow's O grids around bodies with corners", "3 ms at 129 x 65"),
-    "quad-general": ("four-sided domains, variational", "2 ms at 65 x 65"),
+    "quad-general": ("variational grids of four-sided domains", "2 ms at 65 x 65"),
     "quad-winslow": ("Winslow's grids of four-sided domains", "2 ms at 65 x 65"),
 }
 """Uses, and approximate times per grid on one core, without reading and writing (docs/benchmarks)."""
@@ -39,7 +39,7 @@ def models(name: str | None = None) -> list[dict[str, Any]]:
     >>> sorted(model["name"] for model in models())
     ['airfoil-o', 'hole-o', 'hole-winslow', 'quad-general', 'quad-winslow']
     >>> models("quad-general")[0]["use"]
-    'four-sided domains, variational'
+    'variational grids of four-sided domains'
     """
     names = shipped() if name is None else (name,)
     return [_facts(each) for each in names]
