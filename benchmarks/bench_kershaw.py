@@ -33,7 +33,7 @@ in grid quality and in CPU time of one thread. The case is Kershaw's map of the 
 compresses the cells in six layers. The smaller its parameter ε, the stronger is the compression; ε = 1 gives
 the uniform grid.
 
-- *Kershaw's grid*: a uniform grid, deformed by this map. meshonet keeps the nodes on the six faces.
+- *Kershaw's grid*: a uniform grid, deformed by this map. meshonet does not move its boundary nodes.
 - *TMOP*: MFEM's mini-app `mesh-optimizer` with `-mid 303 -tid 1`, started from Kershaw's grid. Its Newton
   method takes at most 100 MINRES iterations per step.
 - *objective*: mean over the cells of the integral of |**T**|² / (3 det(**T**)^⅔) − 1, which is 0 for cubes.
@@ -49,7 +49,7 @@ TAIL = """
 - **Same minimum**: with fixed boundary nodes `--energy shape` reaches the objective 0.48074 in 0.19 s, TMOP
   reaches 0.48073 in 62.51 s.
 - **Sliding boundary nodes**: TMOP with boundary nodes that slide in the faces reaches the uniform grid.
-  meshonet never moves the nodes on the faces of a volume.
+  meshonet never moves boundary nodes of a volume.
 - **Default**: use `--energy angles` for angles near 90 degrees. Its mean deviation is 19.1 degrees, that of
   `--energy shape` 29.7 degrees. `--energy angles` does not penalise large aspect ratios.
 """

@@ -223,15 +223,15 @@ HEAD = """# Four-sided domains: TFI, Winslow and variational grids
 <!-- made by python benchmarks/bench_variational.py --page docs/benchmarks/variational.md -->
 
 Use this page to choose between `tfi`, `solve-pde --method winslow` and `solve-pde --method variational`, and
-the number of nodes for `--coarse`. The grids are in four-sided domains and around NACA airfoils. CPU times
-are for one thread. For the methods see [elliptic grids](../theory/elliptic.md) and [variational
-grids](../theory/variational.md).
+the number of nodes for `--coarse`, in four-sided domains and around NACA airfoils. For the methods see
+[elliptic grids](../theory/elliptic.md) and [variational grids](../theory/variational.md).
 
 - *arch*, *hexagon*, *wrench*: shapes of the MeshONet paper (arXiv 2501.11937). *bump*: a square with a half
   disc cut out of the south side.
 - *--coarse N*: solution on N x N nodes, interpolated to all nodes.
 - *network `quad-general`*: a [network](quad-operator.md) that predicts the variational grid.
-- *infer*: `infer` without options; around airfoils, Winslow's equations after a conformal map.
+- *infer*: `infer` without options. It maps the domain conformally to a strip, and solves Winslow's
+  equations there.
 - *NACA 0012-sharp*: NACA 0012 with a closed trailing edge.
 - *folded cells*: number before repair.
 - *maximum*, *99th percentile*, *mean*: of the largest angles of all cells; for random domains, averages of
@@ -241,7 +241,7 @@ grids](../theory/variational.md).
 - *distance to the solution on all nodes*: RMS distance from the grid without `--coarse` (for the
   network: from the variational grid), divided by the RMS distance of the nodes from their centroid.
 - *grids worse than Winslow's*: number of grids whose maximum or mean is larger than in Winslow's grid.
-- *CPU time*: best of several runs; for random domains, the median over the domains.
+- *CPU time*: of one thread, best of several runs; for random domains, the median over the domains.
 
 ![Grids of 33 x 33 nodes by five methods, coloured by the largest angle of each cell](../img/quad-grids.png)
 """
