@@ -33,18 +33,17 @@ HEAD = """# Volumes marched from surfaces: quality and time
 Use this page to find the quality and the CPU time of volumes that `solve-pde --method hyperbolic` [marches
 from surfaces](../guide/marching-surfaces.md). Times are for one thread of {machine}.
 
-- *bwb*: blended wing body. *m6_small*: ONERA M6 wing. *even_sphere*, *uneven_sphere*: spheres. All four are
-  read from files.
-- *star*, *dented*: deformed spheres. *wing, ring and core*: wing whose tip is a patch in a ring of patches.
+- *bwb*: blended wing body. *m6_small*: ONERA M6 wing. *even_sphere*, *uneven_sphere*: spheres.
+- *star*, *dented*: deformed spheres. *wing, ring and core*: the tip is one patch inside a ring of patches.
 - *levels*: number of nodes along a grid line from the surface to the far field.
 - *first-cell height*, *distance of the far field*: prescribed values, in the length unit of the surface.
 - *folded cells*: cells in which a Bezier coefficient of the Jacobian is not positive.
 - *relative error of first-cell height*: maximum over the surface.
-- *angle off the normal*: deviation from 90 degrees of the angle, at any node, between the grid line from the
-  surface to the far field and a grid line of another direction.
-- *growth*: ratio of the heights of adjacent cells along a grid line, larger over smaller, minus 1.
-  *prescribed growth*: follows from first-cell height, levels and distance of the far field. *largest growth*:
-  in the volume.
+- *angle off the normal*: at each node, the grid line to the far field makes an angle with each of the other
+  grid lines. The table gives the deviation of these angles from 90 degrees.
+- *growth*: ratio of the heights of successive cells towards the far field, larger over smaller, minus 1.
+  *prescribed growth*: follows from first-cell height, levels and far-field distance. *largest growth*: in the
+  volume.
 - *CPU time*: time to march and to test the volume, without reading and writing, best of 3 runs.
 
 """
