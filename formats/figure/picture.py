@@ -100,5 +100,5 @@ def write(
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, kind: str) -> None:
-    """Write a picture, without colours, of the one grid in `grids`."""
+    """Write a picture, without colours, of a grid; `grids` has exactly one."""
     write(path, only_one(grids, f"a .{kind} file"), kind)

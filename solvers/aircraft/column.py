@@ -122,7 +122,7 @@ class ColumnLevel:
 
     @classmethod
     def of(cls, plan: ColumnPlan, holes: Sequence[Hole]) -> ColumnLevel:
-        """Return the patches around `holes`, which are the section of a wing, that of a fin, or both."""
+        """Return the patches around `holes`; a hole is where a wing or a fin meets the body."""
         levels = (CollarLevel.of(*each) for each in zip(plan.collars, holes, strict=True))
         return cls(plan, tuple(levels))
 
@@ -132,7 +132,7 @@ class ColumnLevel:
         return replace(self, plan=plan, levels=tuple(levels))
 
     def beside_fin(self, fin: ColumnLevel) -> ColumnLevel:
-        """Return the patches with zeta at the top of the body changed to the mean of theirs and `fin`'s."""
+        """Return the patches; their zeta at the top of the body becomes the mean of it and that of `fin`."""
         zeta = self.zeta
         return replace(self, crown=zeta + 0.5 * (fin.levels[-1].hole.zeta - zeta))
 
