@@ -126,7 +126,7 @@ def _parts(
 
 
 def cells_beside(connection: Connection, cells: Sequence[Indices]) -> tuple[Indices, Indices]:
-    """Return the numbers of the cells on both sides of a connection; cells at the same index are adjacent."""
+    """Return the ids of the cells on each side of a connection; ids at the same place are of neighbours."""
     own, donor = cells_at(connection, lambda block, side: face_of(cells[block][..., None], side))
     return own[..., 0], donor[..., 0]
 

@@ -31,7 +31,7 @@ class Aircraft:
     others : tuple of Stack or SurfaceWing, optional
         Further wings, such as a tail plane, canards or a `Fin`, each with its own name.
     axes : AircraftAxes, optional
-        Axes of the surface file, and of the grid.
+        Axes of the files of the body and the wings, and of the grid.
     notes : tuple of str, optional
         Notes on changes of the body.
 

@@ -132,7 +132,7 @@ class ColumnLevel:
         return replace(self, plan=plan, levels=tuple(levels))
 
     def beside_fin(self, fin: ColumnLevel) -> ColumnLevel:
-        """Return the patches; their zeta at the top of the body becomes the mean of it and that of `fin`."""
+        """Return the patches with another zeta at the top of the body: the mean with the zeta of `fin`."""
         zeta = self.zeta
         return replace(self, crown=zeta + 0.5 * (fin.levels[-1].hole.zeta - zeta))
 
