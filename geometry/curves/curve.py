@@ -107,7 +107,7 @@ class Curve:
 
     @property
     def tables(self) -> tuple[Floats, Floats, Floats, Floats, int]:
-        """For C code: cubics in t; their parts' arc lengths s, dt/ds at starts, at ends; parts per cubic."""
+        """Tables for C code: the cubics, and the arc lengths and derivatives at the ends of their parts."""
         return self._cubic, self._table, self._rate_start, self._rate_stop, _STEPS
 
     def _locate(self, s: Floats) -> tuple[Indices, Floats]:

@@ -110,7 +110,7 @@ class Follow:
         return affine(old[at], there[at], turns)
 
     def along_sides(self, move: Floats, there: Floats) -> Floats:
-        """Make displacements `move` (n, d) tangential, in place, to flat sides along which nodes slide.
+        """Make displacements `move` (n, d), in place, tangential to flat sides along which nodes slide.
 
         A side is flat if its old nodes and its new ones, `there` (n, d), lie in one line or plane.
         """

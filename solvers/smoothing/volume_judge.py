@@ -31,7 +31,7 @@ class VolumeMeasures:
 
     @property
     def bound(self) -> float:
-        """Smallest scaled Jacobian at which another mesh still counts as no worse than this mesh."""
+        """Scaled Jacobian below which another mesh counts as worse than this mesh."""
         return min(_PART * self.least, _GOOD)
 
 
