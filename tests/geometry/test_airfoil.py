@@ -11,6 +11,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.shapes.closed_curve import closed_curve
 from meshonet.geometry.spacing.sampling import Sampling
 
@@ -204,3 +205,12 @@ def test_a_base_that_takes_most_wall_nodes_has_a_note() -> None:
     assert not [n for n in notes if "wall nodes lie on the base" in n]
     notes = section.boundary(replace(crowded, te_spacing=None, base_nodes=81)).notes
     assert [n for n in notes if n.endswith("use fewer {base_nodes}")]
+
+
+@pytest.mark.parametrize("name", ["0012-sharp", "4412-sharp", "2412"])
+def test_normalised_edges_are_at_0_and_1_for_sharp_and_blunt_sections(name: str) -> None:
+    section = naca(name)
+    body = section.normalised()
+    assert len(body.curve.points) == len(section.curve.points)
+    assert body.trailing_edge == pytest.approx([1.0, 0.0], abs=1e-14)
+    assert body.leading_edge == pytest.approx([0.0, 0.0], abs=1e-14)

@@ -133,9 +133,10 @@ class Airfoil:
     def normalised(self) -> Airfoil:
         """Return the airfoil moved, rotated and scaled: leading edge at (0, 0), trailing edge at (1, 0)."""
         axis = (self.trailing_edge - self.leading_edge) / self.chord**2
-        off = self.curve.points[1 if self.blunt else 0 :] - self.leading_edge
-        points = np.stack(along_and_across(off, axis), axis=1)
-        return Airfoil(points, self.name, notes=self.notes)
+        points = self.curve.points  # the first is the middle of a blunt edge, or the sharp edge
+        ring = points[1:] if self.blunt else np.concatenate([points, points[:1]])
+        off = along_and_across(ring - self.leading_edge, axis)
+        return Airfoil(np.stack(off, axis=1), self.name, notes=self.notes)
 
     def smoothed(self, tolerance: float) -> Airfoil:
         """Return the airfoil smoothed by splines within `tolerance` chords of its points; corners stay."""
