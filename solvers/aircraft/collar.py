@@ -14,6 +14,7 @@ from meshonet.geometry.arrays import Floats, arc_lengths, norms, rolled
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.cubic import CubicTable, cubic_spline
 from meshonet.geometry.elementary import exp, power
+from meshonet.geometry.polygon.normals import left_normals
 from meshonet.geometry.ties import first_least
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.rows.columns import arcs_of
@@ -203,11 +204,7 @@ def _lines(root: Floats, outer: Floats, straight: float = 0.0) -> tuple[Floats, 
 
 def _normals(loop: Floats) -> Floats:
     """Return smoothed outward unit normals (n, 2) of a closed counter-clockwise loop."""
-    ring = loop[:-1]
-    after, before = rolled(ring, -1) - ring, ring - rolled(ring, 1)
-    tangent = after / np.hypot(*after.T)[:, None] + before / np.hypot(*before.T)[:, None]
-    normal = np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)
-    normal /= np.hypot(*normal.T)[:, None]
+    normal = -left_normals(loop[:-1])
     normal = 0.5 * normal + 0.25 * (rolled(normal, 1) + rolled(normal, -1))
     normal /= np.hypot(*normal.T)[:, None]
     return np.concatenate([normal, normal[:1]])

@@ -20,6 +20,7 @@ from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
+from meshonet.geometry.polygon.normals import left_normals
 from meshonet.geometry.spacing.growth import cells_for_growth
 from meshonet.kernels._native import line_neighbours
 from meshonet.solvers.energy.quads import optimise
@@ -94,7 +95,7 @@ def filled_outline(outline: Floats, lead: int, first: float, growth: float) -> G
     closed = np.append(around, 0)
     beyond = np.stack([count + closed, closed], axis=1)  # with them growth is limited across the outline
     mesh = QuadMesh(
-        Domain((loop,), "gap"), np.concatenate([start, _outside(outline, first)[order]]),
+        Domain((loop,), "gap"), np.concatenate([start, (outline + first * left_normals(outline))[order]]),
         lattice_quads([block[::-1] for block in (*blocks, beyond)]), places,
     )  # fmt: skip
     nodes = _optimum(mesh, held, growth).nodes
@@ -103,15 +104,6 @@ def filled_outline(outline: Floats, lead: int, first: float, growth: float) -> G
         places.take(np.arange(count)),
     )  # fmt: skip
     return GapFill(order, Layout(inside, tuple(blocks)))
-
-
-def _outside(outline: Floats, distance: float) -> Floats:
-    """Return points (k, 2) at a distance from the nodes of a clockwise outline (k, 2)."""
-    step = np.roll(outline, -1, axis=0) - outline
-    way = step / norms(step)[:, None]
-    way = way + np.roll(way, 1, axis=0)
-    normals = np.stack([-way[:, 1], way[:, 0]], axis=1)
-    return np.asarray(outline + distance * normals / norms(normals)[:, None])
 
 
 def _optimum(mesh: QuadMesh, held: Bools, growth: float) -> QuadMesh:
