@@ -38,6 +38,8 @@ def test_every_kind_of_shape_applies_or_refuses_an_option(meshonet: Meshonet, ru
         if done.code:
             assert (done.code, len(done.err.splitlines()), made.exists()) == (2, 1, False), done.err
             assert option in done.err
+            remedy = done.err.partition("; ")[2]
+            assert remedy.startswith(("leave --", "drop --", "use o or quad", "give one of them")), done.err
         else:
             assert nodes(made) != nodes(Path("plain.h5")), f"refuse {option}, or apply it"
             made.unlink()

@@ -165,6 +165,7 @@ def test_refuses_what_is_no_outline(points, message):
     ("sampling", "message"),
     [
         (Sampling(topology="c"), "needs the trailing edge of an airfoil"),
+        (Sampling(te_spacing=0.01), "te_spacing needs an airfoil"),
         (Sampling(normalise=True), "normalise needs an airfoil"),
         (Sampling(spacing="conformal"), "conformal spacing needs a body"),
         (Sampling(corners=(0, 1, 2, 9)), "corner 9 of 4 points does not exist; use 0 to 3"),

@@ -197,9 +197,8 @@ def test_the_chord_of_a_boundary_from_elsewhere_is_that_of_the_body_not_of_the_w
 
 @pytest.mark.parametrize("asked", [{"wake": 5.0}, {"wake_nodes": 20}])
 def test_a_wake_asked_of_an_o_grid_is_not_ignored(asked: dict[str, Any]) -> None:
-    with pytest.raises(
-        InputError, match=r"an O grid has no wake; leave wake(_nodes)? out, or use topology c"
-    ):
+    (name,) = asked
+    with pytest.raises(InputError, match=f"an O grid has no wake; leave {name} out, or use topology c"):
         naca("0012").boundary(Sampling(ni=60, nj=20, topology="o", **asked))
     with pytest.raises(InputError, match="an O grid has no wake"):
         naca("0012").boundary(Sampling(ni=60, nj=20, viscous=True, **asked))  # blunt: an O by itself
