@@ -57,8 +57,8 @@ class Layered(Wrapper):
         heights = heights_of(self.request, boundary)
         if self.request.at_walls and boundary.topology in self.marched:
             refuse(self.request.chosen, MARCHED)
-            given = self.request.method == "hyperbolic" or self.request.refine
-            if given or not too_tall(boundary, heights.south):
+            always = self.request.method == "hyperbolic" or self.request.refine
+            if always or not too_tall(boundary, heights.south):
                 return self._march(boundary)
             check_layers(self.request.height() or 0.0, self.request.growth)
         if heights.any and self.request.refine:
@@ -85,7 +85,7 @@ class Layered(Wrapper):
         if heights.any:
             edges = solution.boundary or boundary
             slid = solution.boundary is not None
-            if boundary.wake:  # its first cells are not those of the result
+            if solution.method == "hyperbolic":  # its notes are on first cells that the result does not have
                 solution = replace(solution, notes=())
             solution = spread(guard(solution, edges, allow_invalid=True), edges, heights)
             solution = solution if slid else _noted_lean(solution, boundary, heights)
