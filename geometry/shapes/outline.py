@@ -72,10 +72,14 @@ class Outline:
         if sampling.corners is not None and sampling.topology == "auto":
             topology = "quad"
         sampling.check_airfoil(self.name)
-        quad, given = topology == "quad", sampling.corners is not None
+        quad = topology == "quad"
         for wrong, problem, remedy in (
             (topology == "c", "{topology} c needs the trailing edge of an airfoil", "use o or quad"),
-            (given and not quad, "an O grid has no corners", "leave {corners} out, or use {topology} quad"),
+            (
+                sampling.corners is not None and not quad,
+                "an O grid has no corners",
+                "leave {corners} out, or use {topology} quad",
+            ),
             (
                 sampling.far_field is not None and quad,
                 "a four-sided domain has no far field",

@@ -173,12 +173,10 @@ def _with_layers(
     from meshonet.solvers.blocking.layers.stretches import layered_walls
 
     numbers, stretches = layered_walls(domain, request.layered)
-    size = _wanted(domain, request)[1]
-    settings, bodies = settings_of(request, height), len(domain.loops) - 1
-    cells = 0 if size else (request.cells or request.default_cells(bodies)) * request.multiple**2
-    size = (size or 0.0) / request.multiple
+    cells, size = _wanted(domain, request)
     return layered(
-        domain, numbers, settings, stretches=stretches, cells=cells, cell_size=size, layout=layout,
+        domain, numbers, settings_of(request, height), stretches=stretches,
+        cells=(cells or 0) * request.multiple**2, cell_size=(size or 0.0) / request.multiple, layout=layout,
         timings=timings,
     )  # fmt: skip
 

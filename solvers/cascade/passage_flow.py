@@ -90,12 +90,12 @@ class PassageFlow:
         the same sum for the constant 1 (Helsing, Ojala, J. Comput. Phys. 227 (2008) 2899-2921).
         """
         finite = np.isfinite(self.strip)
-        around = tanh(0.5 * self.strip[finite])
-        weight = np.roll(around, -1) - np.roll(around, 1)
-        terms = np.stack([self.away[finite], np.ones(len(around))], axis=1)
+        circle = tanh(0.5 * self.strip[finite])
+        weight = np.roll(circle, -1) - np.roll(circle, 1)
+        terms = np.stack([self.away[finite], np.ones(len(circle))], axis=1)
 
         def integrals(some: Complexes) -> Complexes:
-            sums = product(weight / (around - tanh(0.5 * some)[:, None]), terms)
+            sums = product(weight / (circle - tanh(0.5 * some)[:, None]), terms)
             return np.asarray(sums[:, 0] / sums[:, 1])
 
         return np.concatenate(in_threads(integrals, np.array_split(places, thread_count())))

@@ -62,14 +62,14 @@ def key_tables(row: Row, first: float, growth: float, cells: int, zones: Sequenc
     section, plans = planned(planes, coarse, cells, _longest(planes), _wake(row, planes), gaps)
 
     def tables(plan: SectionPlan) -> KeyTables:
-        jobs = [partial(_sections, row, plan, planes, section, first, growth)]
         inside = [partial(gap_ends, row, plan.places, zone, first, growth) for zone in zones if zone.gap]
-        sections, *made = run_in_threads([*jobs, *inside])
-        return KeyTables(plan, sections, tuple(made))
+        made = partial(_sections, row, plan, planes, section, first, growth)
+        sections, *ends = run_in_threads([made, *inside])
+        return KeyTables(plan, sections, tuple(ends))
 
     try:
         return tables(plans[0])
-    except NoValidGridError:
+    except NoValidGridError:  # layers are folded where nodes had to move far
         return tables(plans[1])
 
 

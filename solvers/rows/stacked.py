@@ -20,7 +20,7 @@ from meshonet.solvers.rows.span_spacing import LineArcs, Spacing
 from meshonet.solvers.rows.zones import Zone
 
 DEGREE = 5  # degree of the polynomials along the span; optima of neighbouring sections contain noise
-_AT_ONCE = 1 << 18  # number of nodes that are computed together, so that they fit into the cache
+_AT_ONCE = 1 << 18  # number of nodes that are computed together: few calls, and arrays of some megabytes
 
 
 @dataclass(frozen=True, eq=False)
