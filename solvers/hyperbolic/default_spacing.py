@@ -20,7 +20,7 @@ PART = 0.05
 MOST = 0.25  # the same where rows are few, so that they grow by no more than `GROWTH`
 GROWTH = 1.2  # largest ratio of neighbouring rows
 CHOSEN = "{first_cell} is not given: the first-cell height follows from the length of the shortest wall cell"
-TALL, TALL_AROUND = 0.75, 0.02
+TALL, TALL_AROUND = 0.75, 0.006
 """First-cell heights above which marched lines bunch: C grids, per smallest wall cell; O grids, in chords."""
 _TALLEST = 3000  # rows beyond which the power of the growth ratio would exceed the range of numbers
 STEEPEST = 1.3  # growth beyond which marched grids have larger angles than variational ones

@@ -113,7 +113,8 @@ def test_first_cells_longer_than_the_smallest_wall_cell_leave_no_kink_behind_the
     assert note.startswith(f"first cells {first:g} off south")
 
 
-def test_an_o_grid_with_first_cells_of_a_twentieth_chord_grows_evenly() -> None:
-    cells = np.linalg.norm(np.diff(infer("naca:0012", first_cell=0.05).nodes, axis=1), axis=-1)
-    assert cells[:, 0] == pytest.approx(0.05, rel=1e-8)
+@pytest.mark.parametrize("first", [0.0075, 0.05])
+def test_an_o_grid_with_high_first_cells_grows_evenly(first: float) -> None:
+    cells = np.linalg.norm(np.diff(infer("naca:0012", first_cell=first).nodes, axis=1), axis=-1)
+    assert cells[:, 0] == pytest.approx(first, rel=1e-8)
     assert (cells[:, 1:] < 1.06 * cells[:, :-1]).all()
