@@ -189,8 +189,8 @@ compares expected and true errors of four networks, mostly on kinds of shapes th
 kinds are those of the [open comparison](yardstick.md).
 
 The network `meshonet` of [the paper](paper/index.md) was trained on 30 arches. It was tested on 40 arches, 40
-hexagons, 40 semicircles and 80 four-sided domains. The given boundary nodes replace the predicted ones;
-therefore many cells are folded.
+hexagons, 40 semicircles and 80 four-sided domains. This network also predicts boundary nodes. The given
+boundary nodes replace them, and many cells beside the boundary are folded.
 """
 COLUMNS = (
     "| network | grids | true error, median | true error, maximum | rank correlation | expected / true "

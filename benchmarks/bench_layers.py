@@ -46,13 +46,13 @@ solvers get the same boundary nodes.
 
 - *distance*: largest distance between a node of `meshonet.layer` and the same node of the compiled solver,
   divided by the largest extent of the grid.
-- *folded*: number of grids of `meshonet.layer` with folded cells. *folded in torch only*: of these, grids
-  without folded cells from the compiled solver.
+- *folded*: number of grids of `meshonet.layer` with folded cells. *folded in torch only*: number of these
+  grids for whose shapes the compiled solver's grids are not folded.
 - *CPU ms*: CPU time to compute a grid, in milliseconds.
 - *gradient*: CPU time to differentiate a function of the grid by the boundary nodes, divided by *CPU ms*.
 
-A row starts from 1000 shapes, the 32-bit rows of `variational` and `conformal` from 32. Invalid domains
-and airfoils without a conformal map are left out.
+1000 shapes are tried for each row, and 32 for the 32-bit rows of `variational` and `conformal`. Invalid
+domains and airfoils without a conformal map are left out.
 """
 
 TAIL = """

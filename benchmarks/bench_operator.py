@@ -268,7 +268,7 @@ Terms and columns:
 FAMILIES_NOTE = """
 ## The six families of the MeshONet paper, 101x101
 
-Each row is for six shapes of a family of the MeshONet paper (arXiv 2501.11937). A cell contains the median
+Each row is for six shapes of a family of the MeshONet paper (arXiv 2501.11937). The table gives the median
 distance of all nodes from Winslow's converged solution and, in brackets, the number of grids with folded
 cells.
 
@@ -277,8 +277,8 @@ cells.
   the plate with a hole. These networks were not trained on the families.
 - *network, polished*: 2 multigrid cycles after the network; for the airfoil the grid of `infer`.
 - *MeshONet*: the network of the paper. *MeshONet-hard*: a similar network that keeps the given boundary
-  nodes. [Both](paper/index.md) were trained on 30 shapes of each family. For both the distance is from the
-  grid of `solve-pde` with 101x101 nodes.
+  nodes. [Both](paper/index.md) were trained on 30 shapes of each family. The distances of these two
+  networks are from the grid of `solve-pde` with 101x101 nodes.
 """
 TIMES_HEAD = """
 ## CPU time in milliseconds, best of 3

@@ -222,8 +222,9 @@ HEAD = """# Four-sided domains: TFI, Winslow and variational grids
 
 <!-- made by python benchmarks/bench_variational.py --page docs/benchmarks/variational.md -->
 
-Use this page to choose between `tfi`, `solve-pde --method winslow` and `solve-pde --method variational`, and
-the number of nodes for `--coarse`, in four-sided domains and around NACA airfoils. For the methods see
+Use this page to choose a method for four-sided domains and NACA airfoils: `tfi`, `solve-pde --method
+winslow` or `solve-pde --method variational`. It also helps to choose the number of nodes for `--coarse`,
+with which the equations are solved on fewer nodes. For the methods see
 [elliptic grids](../theory/elliptic.md) and [variational grids](../theory/variational.md).
 
 - *arch*, *hexagon*, *wrench*: shapes of the MeshONet paper (arXiv 2501.11937). *bump*: a square with a half

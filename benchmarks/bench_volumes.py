@@ -42,8 +42,8 @@ grids, with one thread.
 
 TIME = """## Time
 
-The domain has slightly curved faces; strongly curved faces take more time. A copy of the nodes is given
-for comparison.
+The domain has slightly curved faces; strongly curved faces take more time. The first row is the time to
+copy the array of nodes, for comparison.
 """
 
 QUALITY = """## Quality

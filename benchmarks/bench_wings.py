@@ -68,7 +68,7 @@ spans upwards.
 
 - *valid grids*: grids in which all corner Jacobians are positive.
 - *first-cell error*: largest relative error of the first-cell height over all wall nodes; for blades, over
-  the wall nodes of the two given sections.
+  the nodes of the two given sections of the blade.
 - *scaled Jacobian*: smallest scaled Jacobian of a grid.
 - *largest angle*: largest angle of the cell faces of a grid.
 - *CPU time*: time to compute the grid and its quality report.

@@ -255,9 +255,9 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "The cells' largest angles are smaller in the solver's variational grid than in Winslow's grid. The\n"
-        f"network's variational grid achieves {100 * gain['mean_gain']:.0f} % of this reduction in the mean "
-        f"over cells, {100 * gain['max_gain']:.0f} % in the maximum.",
+        "From Winslow's to the solver's variational grid, the cells' largest angles decrease. The network's\n"
+        f"variational grid has {100 * gain['mean_gain']:.0f} % of the decrease of their mean, and "
+        f"{100 * gain['max_gain']:.0f} % of the decrease of their\nmaximum.",
     ]
     return lines
 

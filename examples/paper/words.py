@@ -58,7 +58,8 @@ QUALITY = """
 ## Quality, case by case
 
 Each case has 30 training shapes and 6 test shapes of 101 x 101 nodes. The networks learn from the grids of
-the PDE solver. Medians, means, maxima and sums are taken over the test shapes.
+the PDE solver. All statistics are over the test shapes: *boundary error* is the largest, *mean angle* the
+mean, and *folded cells* the total.
 
 In the PDE solver's grids of the wrench, 4 to 18 cells at the two corners of 270 degrees were folded. They
 were repaired before the training, by moving all nodes within 12 cells of a folded cell. The number 12 was
@@ -89,15 +90,15 @@ PHYSICS = """
 
 Each of these networks is trained for one geometry, the arch of [mesh refinement](#mesh-refinement) with 101 x
 101 nodes. As every geometry needs a training, the training time is the time to generate a grid. The paper
-says without figures that such networks are as good as the PDE solver but do not generalise.
+says without giving numbers that such networks are as good as the PDE solver but do not generalise.
 """
 
 TIME = """
 ## Mesh refinement
 
-The table gives seconds from boundary to grid, both in memory, for an arch that was not used in training. For
-more than 512² nodes, `solve-pde` solves on 257² nodes and interpolates. A dash means not measured. Our
-programs ran in one thread on {machine}; the paper's MeshONet ran on an RTX 4090.
+The table gives the time in seconds to compute the grid of an arch that was not used in training; reading and
+writing files is not counted. For more than 512² nodes, `solve-pde` solves on 257² nodes and interpolates. A
+dash means not measured. Our programs ran in one thread on {machine}; the paper's MeshONet ran on an RTX 4090.
 """
 
 MAPS = """
