@@ -57,11 +57,10 @@ class Layered(Wrapper):
         heights = heights_of(self.request, boundary)
         if self.request.at_walls and boundary.topology in self.marched:
             refuse(self.request.chosen, MARCHED)
-            always = self.request.method == "hyperbolic" or self.request.refine
-            if always or not too_tall(boundary, heights.south):
+            if self.request.method == "hyperbolic" or not too_tall(boundary, heights.south):
                 return self._march(boundary)
             check_layers(self.request.height() or 0.0, self.request.growth)
-        if heights.any and self.request.refine:
+        elif heights.any and self.request.refine:
             raise InputError("{refine} with first cells of given heights", "use a finer {res} instead")
         if not heights.any and not self.request.slide:
             return self._even(boundary, heights, start)

@@ -5,6 +5,7 @@ import pytest
 from march_shapes import deviation, first_cells
 
 from meshonet import GridRequest, infer, make_grid, quality, read
+from meshonet.geometry.arrays import Topology
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
@@ -111,6 +112,15 @@ def test_first_cells_longer_than_the_smallest_wall_cell_leave_no_kink_behind_the
     assert np.hypot(*np.moveaxis(nodes[:, 1] - nodes[:, 0], -1, 0)) == pytest.approx(first, rel=1e-8)
     (note,) = (note for note in result.notes if "first" in note)
     assert note.startswith(f"first cells {first:g} off south")
+
+
+@pytest.mark.parametrize(("topology", "largest"), [("c", 130.0), ("o", 160.0)])
+def test_high_first_cells_are_exact_in_refined_grids_too(topology: Topology, largest: float) -> None:
+    """Marched with these first cells, lines fold."""
+    result = make_grid(read("naca:2412"), GridRequest(Sampling(topology=topology), first_cell=0.01, refine=1))
+    nodes = result.grid.nodes
+    assert np.linalg.norm(nodes[:, 1] - nodes[:, 0], axis=-1) == pytest.approx(0.01, rel=1e-8)
+    assert result.quality["max_angle"].max < largest
 
 
 @pytest.mark.parametrize("first", [0.0075, 0.05])
