@@ -56,7 +56,7 @@ def around_base(
     around = nodes[wake : len(nodes) - wake]
     heights = norms(np.concatenate([around[:, 1] - lines.wall, between[1] - between[0]]))
     off = float(np.abs(heights / first - 1.0).max())
-    note = f"the first-cell height is {first:.6g} at every node of wall and base, to {off:.1g}"
+    note = f"first cells at wall and base are {first:.6g} high, with relative errors of at most {off:.1g}"
     base = f"the base has {len(lines.base)} nodes, the H block behind it {wake + 1} x {len(lines.base)}"
     advice = *_thick(lines, first, ends), *_oblique(grid, wake)
     if growth is None:
