@@ -12,7 +12,7 @@ Request = TypeVar("Request")
 def request_from(kind: type[Request], what: str, parameters: Mapping[str, Any]) -> Request:
     """Return a request of the class `kind`; ``wall_spacing`` is another name of the field ``first_cell``.
 
-    Raises InputError as `kind`, and for unknown parameters. `what` names the kind of grid in messages.
+    Raises InputError for unknown parameters and wrong values. `what` names the kind of grid in messages.
     """
     named = {"first_cell" if name == "wall_spacing" else name: each for name, each in parameters.items()}
     known = {each.name for each in fields(kind)}  # type: ignore[arg-type]

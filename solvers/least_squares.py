@@ -25,8 +25,9 @@ class NormalEquations:
     Parameters
     ----------
     size : number n of unknowns, or of pairs of unknowns.
-    kinds : for each kind of residual, indices (k, m) of the m unknowns of k residuals; -1: a fixed value.
-    block : 2 if an index means two unknowns, such as x and y; `Residuals.derivatives` are then (k, 2 m).
+    kinds : for each kind of residual, an array (k, m): row i has the indices of the m unknowns on which
+        residual i depends. An index -1 stands for a quantity that is fixed.
+    block : 2 if an index stands for two unknowns, such as x and y; `Residuals.derivatives` are then (k, 2 m).
 
     >>> equations = NormalEquations(1, [np.array([[0], [0]])])
     >>> two = Residuals(np.array([[1.0], [1.0]]), np.ones(2), np.array([-1.0, -3.0]))
@@ -53,7 +54,7 @@ class NormalEquations:
             done += count
 
     def step(self, residuals: Sequence[Residuals], diagonal: Floats, slope: Floats) -> Floats:
-        """Return the changes of the unknowns: (n,), or (2 n,) if each of n indices means two unknowns.
+        """Return the changes of n unknowns, (n,), or of n pairs of unknowns, (2 n,), in a Gauss-Newton step.
 
         `slope` and `diagonal` are first and second derivatives of additional terms, each a function of one
         unknown. Raises SolverError if the equations are singular.

@@ -61,8 +61,8 @@ def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> 
 
     Panels lie between the levels `first` and `last` - 1; there are none if they would not save work. `eta`
     (nj,) ascends from 0 at the wall to 1 at the far field. The domain is mapped onto a strip of mean width
-    `height`, whose edge at the wall is uneven by `spread`. In the strip, panels are at most as long as their
-    distance from the wall, so that the interpolation error is (3 + sqrt(8))^-NODES = 6e-13.
+    `height`. There the wall is a wavy line, `spread` high from trough to crest. In the strip, panels are at
+    most as long as their distance from the wall. The error is then (3 + sqrt(8))^-NODES = 6e-13.
     """
     ends: list[int] = []
     points, matrices = [np.empty(0)], [np.empty((NODES, 0))]

@@ -9,20 +9,17 @@ from meshonet.geometry.elementary import cos, exp, product
 from meshonet.kernels._native import fourier_columns
 
 TAPS = 14  # as in kernels/conformal/strip_rows.h
-
 LANES = 8  # as in lanes.h
-
 SHARPNESS = 2.30 * TAPS  # b
-
 FEWEST = 256  # columns
 
 
 def columns(modes: Complexes) -> Floats:
     """Return values (Q, 2, width) at Q angles, from which windowed sums give m Fourier series at any angle.
 
-    The values f_q have the axes angle, real and imaginary part, and series, padded to a multiple of `LANES`.
-    `modes` (m, 2 K + 1) are the coefficients c_k of the series for k = 0 .. K, -K .. -1. Q is a power of two
-    above 4 K. The sum at theta has `TAPS` terms::
+    `modes` (m, 2 K + 1) are the coefficients c_k of the series for k = 0 .. K, -K .. -1. The axes of the
+    result are the angle theta_q, the real and imaginary part of f_q, and the series. `width` is m, rounded up
+    to a multiple of `LANES`. Q is a power of two above 4 K. The sum at theta has `TAPS` terms::
 
         sum_k c_k exp(i k theta) = sum_q w(theta - theta_q) f_q,      f_q = sum_k c_k / v_k exp(i k theta_q)
         w(theta) = exp(b (sqrt(1 - x^2) - 1)),    x = Q theta / (pi TAPS),    |x| < 1,    b = 2.3 TAPS

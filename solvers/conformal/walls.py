@@ -51,9 +51,9 @@ def is_rough(body: StripWalls) -> bool:
     """Return whether Fourier modes hardly resolve the uneven spacing of the wall, so that cells may fold.
 
     Wall and far field are curves in a strip, the conformal image of the domain. Let s be the sum of the
-    amplitudes, in radians, of the highest Fourier modes of a curve. Walls of airfoils are rough if s is
-    between `SHARPEST` and `ROUGHEST`, for example with evenly spaced nodes around the leading edge. Raises
-    InputError if s is larger, or if it is above `SHARPEST` for the far field or for another body.
+    amplitudes, in radians, of the highest Fourier modes of a curve. A curve is resolved if s is at most
+    `SHARPEST`. The wall of an airfoil is rough if s is above that, but below `ROUGHEST`, as with evenly
+    spaced nodes around the leading edge. Raises InputError for any other curve that is not resolved.
     """
     n = len(body.wall)
     k = np.minimum(np.arange(n), n - np.arange(n))

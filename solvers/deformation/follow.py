@@ -47,7 +47,7 @@ class Field:
         return cls(sources, places, np.ascontiguousarray(areas[sources]), near, where)
 
     def blended(self, motions: Floats) -> Floats:
-        """Return displacements (m, d) of m points, means of the affine `motions` (d + d², k) of k nodes."""
+        """Return the displacements (m, d) of `points` for `motions` of the sources, a result of `affine`."""
         moved = np.empty_like(self.points)
         blend_motions(self.places, self.areas, motions, self.near, self.points, thread_count(), moved)
         return moved.T
@@ -133,7 +133,7 @@ def _near(moved: Floats, fixed: Floats) -> float:
 
 
 def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
-    """Return the unit normal (d,) of a side; None if it is not flat, now or at nodes `there` (n, d)."""
+    """Return a side's unit normal (d,); None if it is bent, before or after nodes move to `there` (n, d)."""
     nodes, after = (each[piece.numbers.ravel()] for each in (table.nodes, there))
     centre = nodes.mean(axis=0)
     _, size, ways = singular_values(nodes - centre)
@@ -143,7 +143,7 @@ def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
 
 
 def sliding_notes(follow: Follow, to: Floats) -> tuple[str, ...]:
-    """Return notes on sides whose nodes slide since the wall beside them moves; `to` (n, d): moved nodes."""
+    """Return notes on sides whose nodes move because the wall beside them moves to positions `to` (n, d)."""
     notes, table = [], follow.table
     for piece in follow.sources.sliding:
         if (to[piece.numbers] == table.nodes[piece.numbers]).all():

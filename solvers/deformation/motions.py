@@ -25,7 +25,7 @@ class Turning:
 
     @classmethod
     def of(cls, nodes: Floats, edges: Indices) -> Self:
-        """Return a wall's edges, weighted by inverse lengths; `edges` (m, 2) are indices into `nodes`."""
+        """Return weights for averaging the rotations of the `edges` (m, 2) at each node: inverse lengths."""
         nearness = 1.0 / np.maximum(norms(nodes[edges[:, 1]] - nodes[edges[:, 0]]), 1e-300)
         total = np.bincount(edges.ravel(), np.repeat(nearness, 2), len(nodes))
         return cls(edges, nearness[:, None] / total[edges])

@@ -162,7 +162,7 @@ def aspect_slope(nodes: Floats) -> Floats:
 
 
 def winslow_residual(nodes: Floats) -> Floats:
-    """Return the residual of Winslow's equations at inner `nodes` (2, ni, nj), by central differences."""
+    """Return the residual of Winslow's equations at the `nodes` (2, ni, nj) of a grid; 0 on its boundary."""
     residual, middle = np.zeros_like(nodes), nodes[:, 1:-1, 1:-1]
     west, east = nodes[:, :-2, 1:-1], nodes[:, 2:, 1:-1]
     south, north = nodes[:, 1:-1, :-2], nodes[:, 1:-1, 2:]

@@ -22,19 +22,19 @@ class Factors:
 
     @classmethod
     def none(cls, ni: int, nj: int) -> Factors:
-        """Return a sum without terms, which is zero at all ni x nj nodes."""
+        """Return the factors of a sum without products, which is zero at all ni x nj nodes."""
         return cls(np.zeros((0, ni)), np.zeros((0, nj)))
 
     def values(self) -> Floats:
-        """Return the values (ni, nj) of the function at all nodes."""
+        """Return the sum (ni, nj) of the products of factors at all nodes."""
         return np.asarray(product(self.along.T, self.across))
 
     def kept(self, i: Indices, j: Indices) -> Factors:
-        """Return this function of the nodes, restricted to nodes with first index in `i`, second in `j`."""
+        """Return the factors at the nodes with first index in `i` and second index in `j`."""
         return Factors(np.ascontiguousarray(self.along[:, i]), np.ascontiguousarray(self.across[:, j]))
 
     def scaled(self, part: float) -> Factors:
-        """Return the function multiplied by `part`."""
+        """Return factors whose sum of products is `part` times as large."""
         return replace(self, along=part * self.along)
 
     def __add__(self, other: Factors) -> Factors:

@@ -13,9 +13,7 @@ REACH = 3.0
 """Number of coarse cells on each side of a kink, and inwards, that are relaxed at full resolution; half of it
 if it is more than `NEAR` fine cells and Winslow's equations were solved.
 """
-
 NEAR = 40  # fine cells from the kink
-
 SWEEPS = 4  # sweeps there
 
 
@@ -24,8 +22,9 @@ def sweep_kinks(
 ) -> bool:
     """Relax planar `nodes` in place around the kinks of the boundary; return whether there are any.
 
-    `nodes` must come from splines through a coarser grid of `counts` nodes; splines are too smooth at kinks.
-    With `only_better`, the nodes around a kink move only if the largest angle becomes smaller.
+    `nodes` (ni, nj, 2) have been interpolated by splines from a coarser grid of `counts` nodes, and
+    splines are too smooth near kinks. With `only_better`, the nodes around a kink move only if the largest
+    angle of the cells there becomes smaller.
     """
     any_kinks = False
     steps = [(n - 1) / (m - 1) for n, m in zip(nodes.shape[:2], counts, strict=True)]

@@ -52,12 +52,12 @@ class Window:
 def windows(
     bad: NDArray[np.int64], margin: int, shape: tuple[int, ...], periodic: bool, largest: int
 ) -> Iterator[Window]:
-    """Yield windows (ranges of nodes) around groups of the cells `bad` (n, d), with `margin` cells around.
+    """Yield windows (ranges of nodes) around groups of the cells with indices `bad` (n, d).
 
-    Cells belong to the same group if they lie in adjacent tiles of `margin` cells. A group whose window would
-    have more than `largest` cells is divided, at most to single tiles. Windows stay inside node counts
-    `shape`, (ni, nj) or (ni, nj, nk). If `periodic`, a window may extend across the seam, but not overlap
-    itself.
+    The block, with node counts `shape` (d,), is divided into tiles of `margin` cells in each direction. Cells
+    in the same tile, or in tiles that touch, form a group. A window contains the tiles of a group and those
+    around them. If it would have more than `largest` cells, the group is divided, but never within a tile.
+    If `periodic`, a window may extend across the seam, but not overlap itself.
 
     >>> list(windows(np.array([[20, 0], [22, 1]]), 6, (100, 50), False, 2500))
     [Window(first=(12, 0), last=(30, 12))]

@@ -94,9 +94,9 @@ def listener_of(nodes: Floats) -> Callable[[int, float, float], None] | None:
     return listener
 
 
-def in_cells(still: float, nodes: Floats) -> float:
-    """Return `still` times the square root of the number of cells of a grid with `nodes` (ni, nj, 2)."""
-    return still * float(np.sqrt((nodes.shape[0] - 1) * (nodes.shape[1] - 1)))
+def in_cells(tolerance: float, nodes: Floats) -> float:
+    """Return the displacement, in cell sizes, below which iterations end: `tolerance` √N for N cells."""
+    return tolerance * float(np.sqrt((nodes.shape[0] - 1) * (nodes.shape[1] - 1)))
 
 
 def _made_valid(nodes: Floats, weights: Weights, periodic: bool) -> bool:

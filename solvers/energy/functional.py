@@ -62,10 +62,9 @@ def relief_of(wall: Floats) -> Floats:
 
 
 def aspect_of(nodes: Floats, periodic: bool = False) -> float:
-    """Return the aspect ratio a of the variational functional: of steps along eta to steps along xi.
+    """Return the variational functional's aspect ratio: mean edge length along eta divided by that along xi.
 
-    It compares root mean square steps on west and east with those on south and north. If `periodic`, west and
-    east are no boundaries; a then minimises the mean of (a |u|² + |v|²/a) / |J|, with edges u, v and area J.
+    The means are root mean squares over the boundary or, if `periodic`, over all cells, weighted by 1 / area.
     """
     if periodic:
         u, v = np.diff(nodes, axis=0)[:, :-1], np.diff(nodes, axis=1)[:-1]

@@ -43,7 +43,7 @@ def tables_of(
 ) -> HexTables:
     """Return the arrays of a mesh for the compiled minimisation, which moves the nodes in the mask `moves`.
 
-    `lengths` are target lengths of cells, by block. If `turned`, each block's longest direction becomes last.
+    `lengths`: target lengths of the cells, by block. `turned`: store the direction with the most nodes last.
     """
     parts = [
         _part(wider, np.append(moves, False), wanted, sizes, turned)

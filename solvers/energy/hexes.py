@@ -149,11 +149,11 @@ def optimise(
     mesh: HexMesh, moves: Bools, targets: Targets, *, slides: Slides | None = None, iterations: int = 60,
     tolerance: float = 1e-5, rounds: int = ROUNDS,
 ) -> HexOptimum:  # fmt: skip
-    """Return the nodes of `mesh` at the minimum of the functional; only nodes in the mask `moves` move.
+    """Return the nodes of `mesh` that minimise a functional of cell angles and edge lengths (`HexWeights`).
 
-    Folded cells are untangled first, in at most `rounds` rounds. The minimisation ends after `iterations`, or
-    if two consecutive iterations each lower the value by less than the fraction `tolerance`. Cells without
-    free nodes are ignored.
+    Only nodes in the mask `moves` (n,) move. Folded cells are untangled first, in at most `rounds` rounds.
+    The minimisation ends after `iterations`, or if two consecutive iterations each lower the functional by
+    less than the fraction `tolerance`. Cells without free nodes are ignored.
     """
     problem = HexProblem(mesh, moves, targets, slides)
     low = problem.unfold(problem.smallest(), rounds)

@@ -42,8 +42,8 @@ def optimise(
     """Return the mesh with its nodes at the variational optimum; wall nodes slide along their walls.
 
     Periodic partners move together. Cells without free nodes are ignored, but must not be folded. The
-    smoothness term compares the lengths of neighbouring edges, along and across grid lines, also across block
-    interfaces.
+    smoothness term compares the length of each edge with those of the opposite edges of its cells, and of the
+    next edges on the same grid line.
 
     Parameters
     ----------

@@ -34,10 +34,10 @@ class Walls:
 
 
 def walls_of(mesh: QuadMesh, fixed: Bools, tied: Bools) -> Walls | None:
-    """Return the walls of a mesh. Nodes are moved along a wall where their arc lengths do not increase.
+    """Return the wall nodes of a mesh, with arc lengths that increase from node to node along each wall.
 
-    `fixed` (n,) is the mask of nodes that must not move. `tied` (n,) is the mask of nodes on periodic sides,
-    which are no walls. Returns None if fixed nodes prevent an increase.
+    Where they do not increase, nodes get new arc lengths. `fixed` (n,) is the mask of nodes that keep theirs,
+    `tied` (n,) that of nodes on periodic sides, no walls. Returns None if fixed nodes are out of order.
     """
     places = mesh.places
     on = (places.loop >= 0) & ~tied

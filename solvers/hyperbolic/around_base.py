@@ -39,10 +39,10 @@ _FADE = 1.0  # widths of the base over which the correction of first cells off i
 def around_base(
     lines: BaseWake, *, first: float, growth: float | None, free_rows: bool, constant: int, multiple: int = 1
 ) -> Solution:
-    """Return the grid of two blocks around `lines`: a body with a blunt base, and its wake.
+    """Return the grid around a body with a blunt base: a C block, and an H block behind the base.
 
-    `first` is the first-cell height in the unit of the lines. The other parameters are as in `hyperbolic`.
-    Raises InputError as `hyperbolic`, and SolverError if the march diverges.
+    `lines` run along the body and its wake. `first` is the first-cell height in their unit. Other parameters
+    and InputError are as in `hyperbolic`. Raises SolverError if the march diverges.
     """
     check_layers(first / lines.chord, growth)
     ends, between = _h_block(lines, first, growth)

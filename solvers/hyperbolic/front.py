@@ -17,7 +17,6 @@ from meshonet.solvers.hyperbolic.settings import RISING, MarchSettings
 
 _OPENING = 5.0  # a, the growth of first cells far behind the edge, in wall cells per chord
 _NEAR = 0.3  # b; first cells x chords behind the edge are 1 + a x²/(x + b) wall cells high, plus `rise`
-
 _CLOSED_AHEAD, _ASIDE, _OPEN_AHEAD, _OPEN_MORE = 1.8, 0.055, 23.0, 0.015
 """Corrections of the distance of levels relative to those around a circle, fitted on airfoils to 1 %."""
 
@@ -104,9 +103,9 @@ class Front:
 
 
 def opening(behind: Floats, higher: Floats) -> Floats:
-    """Return the heights (n,) of first cells along a wake, relative to the first-cell height at the wall.
+    """Return the heights (n,) of first cells along a wake, divided by the first-cell height at the wall.
 
-    `behind` (n,) are distances behind the trailing edge, in chords. `higher` (n,) is added to the result.
+    `behind` (n,) are distances behind the trailing edge, in chords. `higher` (n,) is added to these ratios.
     """
     return np.asarray(1.0 + _OPENING * behind**2 / (behind + _NEAR) + higher)
 

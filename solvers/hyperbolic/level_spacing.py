@@ -44,7 +44,7 @@ def fastest(nodes: Floats) -> Floats:
 
 
 def even_shares(nodes: Floats, steps: Floats, rate: float, constant: int) -> Floats:
-    """Return logarithms (n,) of step ratios that give all levels the same largest growth, for `level_steps`.
+    """Return `shares` (n,) for `level_steps`, with which the largest growth ratio is the same on all levels.
 
     Parameters
     ----------
@@ -67,7 +67,8 @@ def level_steps(
     ----------
     constant : number of equal steps at the wall; all further steps grow by one ratio.
     edge : sharp edge of the wall, or None; steps grow less where grid lines diverge from this edge.
-    shares : (cells,) logarithms of growth ratios, up to a factor, in place of `constant` and `edge`.
+    shares : (cells,) numbers in place of `constant` and `edge`: the logarithm of step k divided by step k - 1
+        is proportional to ``shares[k]``; ``shares[0]`` is 0.
 
     >>> level_steps(1.0, 9.0, 5, 3, None).tolist()
     [1.0, 1.0, 1.0, 2.0, 4.0]

@@ -32,7 +32,6 @@ MARGIN = 0.006  # margin by which ratios, in logarithms, should be below the lim
 STEPS = 24  # largest number of Gauss-Newton steps; the weight reaches its largest value in 15
 MOST, RELAXED, TRIES = 6.0, 1.5, 6
 """Largest displacement of a place in steps; factor on the limit if it is exceeded; number of tries."""
-
 FINER = 8  # number of points per column at which measures are tabulated
 SLACK = np.array([2.0, 1.0, 0.9])
 """Logarithms of ratios along fronts, at walls, and in the level next to these, by that of the limit."""
@@ -54,7 +53,7 @@ class Measures:
     slack: Floats | float = 1.0
 
     def at(self, places: Floats, closed: bool) -> Floats:
-        """Return k functions along the curve, (k, n), at `places` (n,), also beyond its ends if `closed`."""
+        """Return the functions' values (k, n) at positions `places` (n,), on any turn of a `closed` curve."""
         turns = np.zeros(len(places))
         if closed:
             turns, places = np.divmod(places, self.arcs[-1])
@@ -105,7 +104,7 @@ def evened_places(
     The functions `measures` turn positions into lengths; steps are the differences of successive lengths.
     Positions in the mask `fixed` (n,) stay. `limit` is the logarithm of the largest ratio; it is relaxed if
     positions would move by more than `most` steps. On a `closed` curve, the last step leads to the first
-    position. `links` are further conditions. With a larger weight `change`, ratios change less.
+    position. `links` are further conditions. A larger `change` keeps ratios nearer to their initial values.
     """
     line = _Line.of(places, fixed, measures, closed, links, change)
     new = places

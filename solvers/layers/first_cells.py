@@ -108,7 +108,7 @@ def edge_in_layers(edge: Floats, count: int, first: float, last: float, heights:
 def arcs_in_layers(
     curve: Curve, count: int, first: float, last: float, heights: Heights
 ) -> tuple[Floats, float]:
-    """Return arc lengths (count,) of nodes whose cells grow from the curve's ends, and the largest ratio."""
+    """Return node arc lengths (count,) for end cells `first` and `last` long, and largest growth ratio."""
     steps = np.empty(count - 1)
     begin = _arc_at(curve, 0.0, first) if first else 0.0
     end = _arc_at(curve, curve.length, last) if last else 0.0

@@ -33,7 +33,7 @@ Numbers = TypeVar("Numbers", Floats, Complexes)
 class GrowthLimit:
     """The penalty w Σ max(0, |ρ| - L)² + μ Σ (ρ - ρ0)² for logarithms ρ (..., k) of growth ratios.
 
-    `limit` is L, `wanted` (..., k) has the preferred values ρ0, `change` is μ. Methods have w as `weight`.
+    `limit` is L, `wanted` (..., k) are the preferred values ρ0, `change` is μ. The methods' `weight` is w.
     """
 
     limit: float | Floats
@@ -42,17 +42,23 @@ class GrowthLimit:
 
     @classmethod
     def at(cls, growth: Floats, limit: float | Floats, change: float = CHANGE) -> Self:
-        """Return the penalty that keeps log growth ratios near `growth` (..., k), clipped to ±`limit`."""
+        """Return the penalty that prefers the log growth ratios `growth` (..., k), clipped to ±`limit`."""
         return cls(limit, np.clip(growth, -limit, limit), change)
 
     def values(self, growth: Floats, weight: float) -> Floats:
-        """Return the penalty (..., k) of log growth ratios, with the factor `weight` above the limit."""
+        """Return the penalty (..., k) of each log growth ratio ρ in `growth` (..., k).
+
+        It is `change` (ρ - `wanted`)² + `weight` max(0, |ρ| - `limit`)², but linear in |ρ| far above `limit`.
+        """
         excess = np.maximum(np.abs(growth) - self.limit, 0.0)
         near = np.minimum(excess, LINEAR)
         return np.asarray(weight * near * (2.0 * excess - near) + self.change * (growth - self.wanted) ** 2)
 
     def residuals(self, growth: Floats, derivatives: Floats, weight: float) -> Residuals:
-        """Return Gauss-Newton residuals of log growth ratios with `derivatives` (..., k, m) by m unknowns."""
+        """Return the penalty that `values` computes, linearised for a Gauss-Newton step.
+
+        Each log growth ratio in `growth` (..., k) depends on m unknowns, with `derivatives` (..., k, m).
+        """
         excess = np.maximum(np.abs(growth) - self.limit, 0.0)
         pull = weight * np.minimum(1.0, LINEAR / np.maximum(excess, LINEAR))
         stiffness = np.where(np.abs(growth) > self.limit - NEARLY, self.change + pull, self.change)

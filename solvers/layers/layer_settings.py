@@ -33,7 +33,7 @@ class LayerSettings:
     constant : number of cells, from the wall, that have the height of the first cell.
     multiple : divisor of the number of layers, so that coarser grids are nested.
     heights : first-cell heights of walls, by the name of the wall.
-    limit : upper limit of each single growth ratio along such a line; 0: about `growth` to the power 1.2.
+    limit : upper limit of every growth ratio along a line from the wall; 0: about `growth` to the power 1.2.
     """
 
     first: float
@@ -112,7 +112,6 @@ def layer_lines(
     `inner` (k,) are the heights of the cells next to the layers, `first` (k,) the first-cell heights.
     """
     columns = columns + arc_parts(columns)[..., None] * (ends - columns[:, -1])[:, None]
-
     lines = spaced(columns, lambda length: settings.arcs(length, first, inner / settings.join, rows))
     exact(lines, first)
     return lines

@@ -18,7 +18,10 @@ _WIDTH, _FALL = 4, 0.35  # rings of nodes around irregular ones that are smoothe
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """Position `own` x + `sign` y + `shift` of a neighbour or ghost of the node at x; node `base` is at y."""
+    """A neighbour of a surface node, or a ghost node that replaces one beyond an open edge.
+
+    Its position is `own` x + `sign` y + `shift`, with the surface node at x and the node `base` at y.
+    """
 
     base: int
     own: float = 0.0
@@ -38,7 +41,7 @@ class Seen:
         )
 
     def opposite(self, splay: float) -> "Seen":
-        """Return a ghost on the other side of the node, 1 + `splay` times as far away as this neighbour."""
+        """Return a ghost opposite to this neighbour of a node, 1 + `splay` times as far from the node."""
         far = 1.0 + splay
         return Seen(self.base, 1.0 + far, -far * self.sign, -far * self.shift)
 

@@ -63,7 +63,7 @@ def march_surface(
     Parameters
     ----------
     wing : for wings, try other smoothing also if a scaled Jacobian is below 0.35, not only if cells fold.
-    remedy : remedy in the error for folded cells, in place of the usual one.
+    remedy : advice in the error message about folded cells; empty for the usual advice.
 
     Raises InputError if settings are impossible or grids of two parts would overlap. Raises NoValidGridError,
     with the worst cells, if in every attempt a corner Jacobian or a Bezier coefficient is not positive.

@@ -50,7 +50,7 @@ class VolumeMarch:
         return FAR_FIELD * size if self.far_field is None else self.far_field
 
     def steps(self, size: float) -> Floats:
-        """Return the steps (layers - 1,) of a march from a surface of extent `size`.
+        """Return the distances between successive layers of nodes, for a surface of extent `size`.
 
         Raises InputError if layers are too few for the growth ratio, or reach beyond the far field.
         """
@@ -75,8 +75,8 @@ class VolumeMarch:
 class Smoothing(NamedTuple):
     """Parameters of the smoothing while marching; ``kernels/surfaces/march.h`` describes most of them.
 
-    `outer` is the explicit smoothing far from the wall, relative to the smoothing near it. Up to 6, layers of
-    nodes around a sphere stay spheres; 16 makes better cells behind swept wings.
+    `outer` is the explicit smoothing far from the wall, divided by the smoothing near it. If `outer` is at
+    most 6, layers of nodes around a sphere stay spheres. The value 16 makes better cells behind swept wings.
     """
 
     explicit: float = 0.3

@@ -18,19 +18,19 @@ _FACING = 0.1  # largest net area that faces a plane of symmetry, as a fraction 
 
 
 class Symmetry(NamedTuple):
-    """The p planes of symmetry of a surface, masks (p, k) of the open edges in each plane, and notes."""
+    """Planes of symmetry of a surface, the open edges (edges of one face only) in each, and notes."""
 
     planes: tuple[Plane, ...]
-    inside: Indices
+    inside: Indices  # (p, k) whether open edge k is in plane p
     notes: tuple[str, ...]
 
 
 def symmetry_of(surface: Surface, axis: str | None, far: float) -> Symmetry:
     """Return the planes of symmetry of a surface that is marched to the distance `far`.
 
-    `axis` is the normal of the planes, ``none`` for no plane, or None to detect planes. A detected plane is
-    left out if the march would reach it: if much of the surface faces it, nearer than `far` (`closes_in`).
-    Raises InputError if no open edge is in a plane normal to `axis`, or if the march would reach the plane.
+    `axis` is the normal of the planes, ``none`` for no plane, or None to detect planes. Grid lines cross a
+    plane if much of the surface faces it from a distance below `far`. If `axis` is None, such planes are left
+    out. Raises InputError if such a plane is normal to a given `axis`, or no plane with open edges is.
     """
     planes, inside = symmetry_planes(surface, axis)
     kept, notes = [], []
@@ -51,10 +51,7 @@ def symmetry_of(surface: Surface, axis: str | None, far: float) -> Symmetry:
 
 
 def closes_in(surface: Surface, plane: Plane) -> float:
-    """Return the mean distance from a plane to the walls that face it.
-
-    The distance is infinite if the net area that faces the plane is at most a tenth of the surface.
-    """
+    """Return the mean distance from a plane to the walls that face it; infinite if their area is small."""
     a, b, c, d = (surface.nodes[surface.quads[:, k]] for k in range(4))
     area = 0.5 * np.cross(c - a, d - b)
     away = (0.25 * (a + b + c + d))[:, plane.axis] - plane.value
@@ -100,7 +97,7 @@ def _named(nodes: Floats, sides: Indices, axis: int, slack: float) -> tuple[Plan
 
 
 def in_planes(surface: Surface, planes: tuple[Plane, ...], inside: Indices) -> Floats:
-    """Return nodes (n, 3) with the open edges marked in ``inside[p]`` (k,) moved exactly into plane p."""
+    """Return nodes (n, 3) with open edges moved exactly into their `planes`; `inside` is as in `Symmetry`."""
     nodes, edges = surface.nodes.copy(), surface.open_edges
     for plane, flags in zip(planes, inside, strict=True):
         nodes[edges[flags], plane.axis] = plane.value
