@@ -18,7 +18,7 @@ OURS = "use a file made by meshonet train"  # remedy for a file that is no model
 
 
 class Kind(NamedTuple):
-    """A kind of model file: the header's entry ``kind`` is `text`, and its entry named `key` is `version`."""
+    """A kind of model file, recognised by the entries ``{"kind": text, key: version}`` of its header."""
 
     text: str
     key: str
@@ -70,16 +70,9 @@ def read_tensors(path: Path) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
 
 
 def write_model(
-    path: Path,
-    kind: Kind,
-    arrays: Mapping[str, NDArray[Any]],
-    name: str,
-    topology: Topology,
-    *,
-    recipe: Mapping[str, Any],
-    figures: Mapping[str, Any],
-    **facts: Any,
-) -> None:
+    path: Path, kind: Kind, arrays: Mapping[str, NDArray[Any]], name: str, topology: Topology, *,
+    recipe: Mapping[str, Any], figures: Mapping[str, Any], **facts: Any,
+) -> None:  # fmt: skip
     """Write a model file for `read_model`, whole or not at all; each array keeps its precision.
 
     `recipe` has the training settings, `figures` the error measures on held-out shapes. `facts` are further

@@ -53,7 +53,8 @@ def model_path(name: str) -> Path:
 def load(name: str | Path) -> Operator:
     """Return the operator of a shipped model by name, or of a model file by path.
 
-    ``base`` is the airfoil solver without a network. Raises InputError for unknown names and wrong files.
+    The name ``base`` gives the solver of Winslow's equations around airfoils, without a network. Raises
+    InputError for unknown names and wrong files.
 
     >>> operator = load("quad-general")
     >>> operator.name, operator.topology

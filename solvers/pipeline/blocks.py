@@ -45,7 +45,7 @@ def as_blocks(shape: Shape, request: GridRequest) -> DomainShape | None:
 
 
 def smooths(shape: DomainShape, request: GridRequest) -> bool:
-    """Return whether the blocks of the grid in `shape` are smoothed, and not replaced by new blocks."""
+    """Return whether the request smooths the input grid, `shape.grid`, instead of making new blocks."""
     new_blocks = request.asks_for_blocks or request.sampling.ni or request.at_walls
     return shape.grid is not None and request.method in SMOOTHERS and not new_blocks
 

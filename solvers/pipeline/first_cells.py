@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def heights_of(request: OneBlock, boundary: Boundary) -> Heights:
     """Return the first-cell heights that a request prescribes, in the unit of `boundary`.
 
-    Raises InputError if no walls are named, and all sides have names, such as inlet, that exclude a wall.
+    Raises InputError if the request names no walls, and no side of a four-sided domain may be a wall.
     """
     off: dict[str, Any] = {}
     if request.at_walls and boundary.around_body:
@@ -53,8 +53,8 @@ def wall_sides(boundary: Boundary) -> list[Side]:
     """Return the sides of a four-sided boundary that get layers if the request names no walls.
 
     South and north get layers if any of their patches may be a wall, west and east if all their patches are
-    walls. If no side meets its condition, all sides with a patch that may be a wall get layers. The name or
-    kind of a patch, such as ``inlet``, may exclude a wall. Raises InputError if no side may be a wall.
+    walls. If no side meets its condition, all sides with a patch that may be a wall get layers. A patch with
+    a name or kind such as ``inlet`` is no wall. Raises InputError if no side may be a wall.
     """
     patches = {side: [p for p in boundary.patches if p.side == side] for side in SIDES}
     possible = [side for side in SIDES if any(patch.may_be_wall for patch in patches[side])]

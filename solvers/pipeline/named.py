@@ -86,7 +86,7 @@ def _check_settings(name: str, function: Callable[..., Any], settings: Mapping[s
 def method_named(name: str, **settings: Any) -> Method:
     """Return the method with the given name and settings.
 
-    Raises InputError if there is no such method, or if it does not have a setting.
+    Raises InputError if there is no such method, or if it does not have one of the `settings`.
 
     >>> method_named("winslow", tol=1e-8).settings
     {'tol': 1e-08}

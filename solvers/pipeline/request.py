@@ -131,7 +131,7 @@ class ManyBlocks(Request):
 
     @property
     def names_walls(self) -> tuple[str, ...]:
-        """Name of the option by which the user names the walls that get layers; () without such an option."""
+        """Name of the option that selects the walls with layers, in a tuple; () if no option does."""
         if self.by_wall:
             return ("first_cell" if self.y_plus is None else "y_plus",)
         return ("walls",) if self.walls else ()
@@ -150,7 +150,7 @@ class Volume(Request):
 
     @property
     def of_surface(self) -> bool:
-        """Whether options require that a volume is marched from a surface, flat or not."""
+        """Whether options require that a volume is marched from a surface."""
         return self.method == "hyperbolic" and not (OF_SURFACE | {"far_field"}).isdisjoint(self.chosen)
 
 

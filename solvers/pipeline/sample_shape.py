@@ -103,7 +103,8 @@ def keeps_base(shape: Shape, request: GridRequest) -> TypeGuard[Airfoil]:
 
     `te` ``exact`` keeps every base. ``auto`` without a first-cell height keeps bases higher than `THIN_BASE`
     chords, unless an option such as `refine` excludes such grids. ``auto`` with a first-cell height keeps
-    these bases if they are one first cell high or more, and lower ones from `RESOLVED` first cells on.
+    bases that are at least `RESOLVED` first cells high. For a base higher than `THIN_BASE` chords, one first
+    cell is enough. If `base_nodes` is given, ``auto`` with a first-cell height keeps every base.
     """
     sampling = request.sampling
     if request.method not in MARCHING or sampling.te not in ("auto", "exact"):

@@ -73,7 +73,7 @@ class Chords:
 
     @cached_property
     def multiple(self) -> Indices:
-        """For each set of opposite edges (chords,), a divisor that its cell count must have for symmetry."""
+        """Numbers (chords,) that must divide the cell counts of sets of opposite edges, for symmetry."""
         multiple = np.ones(self.count, dtype=np.intp)
         for k, edge in enumerate(self.edges):
             own = sum(np.array_equal(distinct(to[edge]), distinct(edge)) for to in self.images)
@@ -164,7 +164,10 @@ class Chords:
         return self.rounded(exp(mean), self.least if least is None else least)
 
     def rounded(self, wanted: Floats, least: Indices) -> Indices:
-        """Return permitted numbers of cells near `wanted` (chords,) that are at least `least` (chords,)."""
+        """Return the cell counts `wanted` (chords,) of sets of opposite edges as permitted whole numbers.
+
+        These are multiples of `multiple` (chords,), and at least `least` (chords,).
+        """
         times = self.multiple
         return times * np.maximum(-(-least // times), nearest_whole(wanted / times).astype(np.intp))
 

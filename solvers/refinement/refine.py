@@ -28,11 +28,11 @@ _FINER = 8  # points a cell, between which nodes at given places lie on straight
 def refine(
     layout: Layout, counts: Indices, chords: Chords | None = None, places: Sequence[Floats] | None = None
 ) -> Layout:
-    """Return the layout with `counts` (chords,) cells along the edges of each chord, a set of opposite edges.
+    """Return the layout with new numbers of cells along the edges of its blocks.
 
-    `places` has, for each edge, the positions (cells + 1,) of the new nodes as fractional indices of old
-    nodes; None: equal steps. If a corner of the domain is inside an edge, the nearest new node moves there.
-    Layers are not preserved.
+    `counts` (chords,) has a number for each set of opposite edges. `places` has, for each edge, the positions
+    (cells + 1,) of new nodes as fractional indices of old nodes; None: equal steps. If a corner of the domain
+    is inside an edge, the nearest new node moves there. Layers are not preserved.
     """
     chords = chords or Chords.of(layout)
     return _Refined(chords, counts, places).layout
@@ -110,9 +110,7 @@ class _Refined:
                 line = np.stack([np.interp(at, dense, line[:, axis]) for axis in (0, 1)], axis=1)
             self.nodes[inner] = line[1:-1]
         whole, rest = divmod(len(new) - 1, len(old) - 1)
-        if (
-            not rest and self.at is None
-        ):  # nodes that stay keep their coordinates bitwise, unless one was put at a corner
+        if not rest and self.at is None:  # nodes that are not moved to a corner stay bitwise the same
             stay = np.ones(len(old), dtype=bool)
             if self.chords.wall[k]:
                 stay = np.abs(arcs[::whole] - before) <= 1e-9 * loop.length

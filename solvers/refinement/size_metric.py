@@ -25,7 +25,10 @@ class Near:
     square: Floats  # (p, m) squared cosine of the angle between the edge and the normal at this point
 
     def length(self, sizes: "SizeMetric") -> Floats:
-        """Return target lengths (m,) of edges by `sizes`: the smallest by their nearest wall points."""
+        """Return the target lengths (m,) of m edges, from the target lengths `sizes` at the wall points.
+
+        Each is the smallest of the lengths that follow from the p points that are nearest to the edge.
+        """
         rise = sizes.grading * self.distance
         high = np.minimum(sizes.across[self.point] + rise, sizes.largest)
         wide = np.minimum(sizes.along[self.point] + rise, sizes.largest)
@@ -65,9 +68,10 @@ class SizeMetric:
         return self.near(places, directions).length(self)
 
     def near(self, places: Floats, directions: Floats) -> Near:
-        """Return, for each edge, the nearest wall points, their distances, and its angles to normals there.
+        """Return the wall point nearest to each edge, its distance, and the edge's angle to the normal there.
 
-        `places` (m, 2) are the midpoints of the edges, `directions` (m, 2) their directions.
+        `places` (m, 2) are the midpoints of the edges, `directions` (m, 2) their directions. If this
+        metric joins several, there is one nearest point for each of these.
         """
         places = np.ascontiguousarray(places)
         size = np.maximum(np.hypot(directions[:, 0], directions[:, 1]), 1e-300)

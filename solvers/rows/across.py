@@ -15,7 +15,7 @@ _FROM = -0.25  # least place: u = 0, the leading edge, is between others
 
 @dataclass(frozen=True, eq=False)
 class ChannelLines:
-    """Lines from one blade to the next, nearly normal to the layers of both: the mean of several sections."""
+    """Lines from one blade to the next, nearly normal to the layers of both; ends are means over sections."""
 
     upper: Floats  # (n,) places u (see `SectionPlane`) on the upper side of a blade, from 0 to 0.5
     lower: Floats  # (n,) 1 - u of the opposite places, on the lower side of the next blade
@@ -39,8 +39,9 @@ class ChannelLines:
         """Return linear conditions that keep lines across the channel from leaning more than at the start.
 
         `u` and `start` (k,) are present and original places of nodes, from 0 to 1 around a blade. Lines join
-        nodes with indices `pairs` (p, 2). The lean of a line is the tangent of its angle to the normal of the
-        blade's layers. The increase in lean is linearised at `u` and multiplied by `weight`.
+        nodes with indices `pairs` (p, 2). The lean of a line is the tangent of its angle to the shortest line
+        from its first end to the layers of the next blade. The increase in lean is linearised at `u` and
+        multiplied by `weight`.
         """
         one = u[pairs[:, 0]]
         slope = np.interp(one, self.upper, np.gradient(self.lower, self.upper))
@@ -50,17 +51,21 @@ class ChannelLines:
         return PlaceLinks(pairs, factors, scale * aside - (factors * u[pairs]).sum(axis=1))
 
     def leaning(self, u: Floats, pairs: Indices) -> float:
-        """Return the mean square lean (see `links`) of lines between nodes `pairs` (p, 2) at places `u`."""
+        """Return the mean square lean (see `links`) of lines across the channel between two blades.
+
+        The lines join nodes with indices `pairs` (p, 2) at places `u` (k,), from 0 to 1 around a blade.
+        """
         return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
     def weights(self, pairs: Floats) -> Floats:
-        """Return (p,) the squared lean (see `links`) of lines per square of ``aside(pairs)``."""
+        """Return factors (p,) by which ``aside(pairs) ** 2`` becomes the squared lean (see `links`)."""
         return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
 
     def aside(self, pairs: Floats) -> Floats:
-        """Return (p,) the place opposite the first end of each line, minus the place of its second end.
+        """Return (p,) u of the ideal second end of each line across the channel, minus u of its second end.
 
-        `pairs` (p, 2) are the places of both ends, from 0 to 1 around a blade.
+        u runs from 0 to 1 around a blade; `pairs` (p, 2) has it at both ends. From the same first end to the
+        ideal second end, a line is nearly normal to the layers of both blades.
         """
         upper, lower = (wrapped(each, _FROM) for each in (pairs[:, 0], 1.0 - pairs[:, 1]))
         return np.asarray(lower - np.interp(upper, self.upper, self.lower))

@@ -73,9 +73,10 @@ def variational(
     ----------
     south, north, west, east : as in `transfinite`.
     coarse : int, optional
-        As in `winslow`, for example 65 to limit the cost. The grid is then not exactly optimal.
+        Greatest number of nodes per direction to optimise. The result is interpolated to all nodes, and is
+        then not exactly optimal.
     failed : {"raise", "nan"}
-        As in `winslow`.
+        With "nan", members of the batch without an optimum get NaN nodes in place of SolverError.
 
     Raises
     ------
@@ -105,15 +106,9 @@ def _solved(equations: Equations, coarse: int | None, failed: Failed, *four: Ten
 
 
 def _four_sided(
-    make: Callable[[Sides], Tensor],
-    south: Tensor,
-    north: Tensor,
-    west: Tensor,
-    east: Tensor,
-    *,
-    decides: bool = False,
-    failed: Failed = "raise",
-) -> Tensor:
+    make: Callable[[Sides], Tensor], south: Tensor, north: Tensor, west: Tensor, east: Tensor, *,
+    decides: bool = False, failed: Failed = "raise",
+) -> Tensor:  # fmt: skip
     """Return nodes (..., ni, nj, 2) by `make`, from sides (batch, 2, n); `decides`: by values of tensors."""
     check_sides(3, south=south, north=north, west=west, east=east)
     check_corners(south, north, west, east)

@@ -54,16 +54,16 @@ class Converged(BatchFunction):
 
     @staticmethod
     def backward(ctx: Any, gradient: Tensor, _: Tensor) -> tuple[None, Tensor]:
-        """Return the gradients by both inputs: None for `equations`; for `nodes`, 0 at inner nodes."""
+        """Return None for the equations, and derivatives with respect to the nodes, 0 at inner nodes."""
         return None, Adjoint.apply(ctx.equations, *ctx.saved_tensors, gradient)  # type: ignore[no-untyped-call]
 
 
 class Adjoint(FirstDerivative):
-    """Torch function that turns derivatives by all nodes into derivatives by boundary nodes."""
+    """Torch function: derivatives with respect to boundary nodes from those with respect to all nodes."""
 
     @staticmethod
     def forward(equations: Equations, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
-        """Return the derivative (batch, 2, ni, nj) of a functional by boundary nodes; 0 at inner nodes."""
+        """Return derivatives (batch, 2, ni, nj) with respect to boundary nodes; they are 0 at inner nodes."""
         (result,) = in_parts(
             lambda *part: (equations.adjoint(*part),),
             equations.most(nodes),

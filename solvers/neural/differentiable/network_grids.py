@@ -48,7 +48,7 @@ class NetworkGrids:
 
     `model` is an operator, the name of a shipped one, or the path of a model file. `device` is torch's name
     of the device. `dtype` is the floating-point type of the computation. Raises InputError if the model does
-    not exist, cannot be read, or makes grids of another topology.
+    not exist, cannot be read, or does not make grids of the topology of the subclass.
     """
 
     topology: ClassVar[Topology]
@@ -74,7 +74,7 @@ class NetworkGrids:
 
 
 class QuadGrids(NetworkGrids):
-    """A neural operator for four-sided domains as a differentiable function; by default ``quad-general``."""
+    """Differentiable grids of four-sided domains by a neural operator, by default model ``quad-general``."""
 
     topology: ClassVar[Topology] = "quad"
     remedy: ClassVar[str] = "use one of four-sided domains, or BodyGrids"
@@ -113,7 +113,7 @@ def _shares(near: Tensor, by: Tensor) -> Tensor:
 
 
 class BodyGrids(NetworkGrids):
-    """A neural operator for O grids around bodies as a differentiable function; by default ``hole-o``."""
+    """Differentiable O grids around bodies by a neural operator, by default the shipped model ``hole-o``."""
 
     topology: ClassVar[Topology] = "o"
     remedy: ClassVar[str] = "use one for bodies"

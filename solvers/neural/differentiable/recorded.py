@@ -22,7 +22,7 @@ def recorded(
 ) -> Tensor:
     """Return nodes (batch, ni, nj, 2) that `function` computes from `sides` (batch, n, 2), also under `vmap`.
 
-    With `counts` (ni, nj), domains without a grid get NaN nodes. Otherwise MemberError is raised.
+    A domain without a grid raises MemberError or, if the node counts `counts` (ni, nj) are given, gets NaN.
     """
     call = partial(_of_unit_size, function)
     if counts is not None:

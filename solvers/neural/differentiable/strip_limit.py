@@ -28,9 +28,10 @@ def picard(c: Tensor) -> Tensor:
 
 
 class Settled(torch.autograd.Function):
-    """Torch function from initial to converged solutions of Winslow's equations in the strip.
+    """Torch function from initial to converged solutions of Winslow's equations around bodies.
 
-    Both are Fourier modes along theta (batch, modes, LEVELS). The highest modes change little.
+    Regions around bodies are mapped to strips of period 2 pi in theta. Solutions are Fourier modes along
+    theta (batch, modes, LEVELS), at LEVELS points across the strip. The highest modes keep their values.
     """
 
     @staticmethod

@@ -59,7 +59,11 @@ class Optimum:
         return newton(nodes + bordered(inner(start - nodes)), smoothness), smoothness
 
     def adjoint(self, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
-        """Turn a functional's `gradient` by all nodes into that by boundary nodes (`Equations.adjoint`)."""
+        """Return the derivatives of functionals of optimal grids with respect to boundary nodes.
+
+        `gradient` has those with respect to all nodes. `nodes` and `number`, the results of `solve`, are the
+        grids and the weights of their smoothness term. The result has no meaning at inner nodes.
+        """
         functional = Functional(Weights().shape, number)
         with torch.enable_grad():
             x = nodes.detach().requires_grad_()

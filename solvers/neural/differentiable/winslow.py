@@ -30,7 +30,7 @@ class Winslow:
         return len(nodes) if nodes.is_cuda else MOST // nodes[0].numel()
 
     def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the solutions (batch, 2, ni, nj), and zeros (batch,), the unused `number` of `adjoint`."""
+        """Return the solutions (batch, 2, ni, nj), and zeros (batch,) that `adjoint` takes without using."""
         check_finite(nodes)
         return nested(nodes), nodes.new_zeros(len(nodes))
 
@@ -182,7 +182,7 @@ class Separable:
         self._values = (along[:, :, None] + across[:, None, :])[:, None]
 
     def solve(self, right: Tensor) -> Tensor:
-        """Return solutions u (batch, 2, mi, mj) of the approximate equations; `right` is the right side."""
+        """Return approximate solutions u (batch, 2, mi, mj) of α u_ξξ + γ u_ηη = `right`; see the class."""
         modes = (self._from_xi @ (right * self._scale) @ self._from_eta.mT) / self._values
         return self._xi @ modes @ self._eta.mT
 

@@ -60,7 +60,7 @@ class OperatorTask(ModelTask):
         self.parts = ("interior", "boundary", *(("penalty",) if more else ()))
 
     def forward(self, rows: Tensor, step: int) -> Tensor:
-        """Return the weighted loss terms of the shapes `rows`: interior, boundary, and any penalty."""
+        """Return the weighted interior and boundary loss, and any penalty, of shapes with indices `rows`."""
         index, inner = self._drawn(step)
         place = torch.from_numpy(index).to(self.places.device)
         goal = self.targets.index_select(0, place).view(len(place), self.count, 2)
@@ -119,13 +119,9 @@ def _by_place(nodes: Floats) -> Floats:
 
 
 def run(
-    model: str,
-    data: Samples,
-    plan: Plan,
-    team: Team,
-    held_out: int,
+    model: str, data: Samples, plan: Plan, team: Team, held_out: int,
     settings: Mapping[str, Any] | None = None,
-) -> Run:
+) -> Run:  # fmt: skip
     """Return the run that trains `model` on the training split of `data`, never on its test split.
 
     `held_out` grids of this split, evenly spaced, are not trained on; the loss on them is monitored.

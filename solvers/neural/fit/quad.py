@@ -58,15 +58,9 @@ class QuadTask(Task):
     parts: tuple[str, ...] = tuple(PARTS)
 
     def __init__(
-        self,
-        training: Quads,
-        held_out: Quads,
-        sizes: QuadUNetSizes,
-        steps: int,
-        device: torch.device,
-        weights: Mapping[str, float] = PARTS,
-        initial: Mapping[str, Floats] | None = None,
-    ) -> None:
+        self, training: Quads, held_out: Quads, sizes: QuadUNetSizes, steps: int, device: torch.device,
+        weights: Mapping[str, float] = PARTS, initial: Mapping[str, Floats] | None = None,
+    ) -> None:  # fmt: skip
         super().__init__()
         self.weights = [weights[part] for part in PARTS]
         self.training_set, self.held_out, self.steps = training, held_out, steps
@@ -119,7 +113,7 @@ class QuadTask(Task):
         return {"loss": loss["variational"], **loss}
 
     def answers(self) -> Tensor:
-        """Return predictions of both grids of each held-out domain, as complex nodes (m, 2, n, n)."""
+        """Return predicted Winslow and variational grids of held-out domains, complex nodes (m, 2, n, n)."""
         with torch.no_grad():
             pairs = zip(*(torch.split(z, 100) for z in (self.held_out.base, self.held_out.step)), strict=True)
             parts = [self._answers(self.mean, *(z.to(self.device) for z in pair)).cpu() for pair in pairs]
@@ -164,14 +158,9 @@ def _distance(answer: Tensor, goal: Tensor) -> Tensor:
 
 def run(
     model: str,  # noqa: ARG001 - there is one
-    data: Quads,
-    plan: Plan,
-    team: Team,
-    held_out: int,
-    sizes: QuadUNetSizes | None = None,
-    initial: Operator | None = None,
-    weights: Mapping[str, float] | None = None,
-) -> Run:
+    data: Quads, plan: Plan, team: Team, held_out: int, sizes: QuadUNetSizes | None = None,
+    initial: Operator | None = None, weights: Mapping[str, float] | None = None,
+) -> Run:  # fmt: skip
     """Return the run that trains the U-Net; the last `held_out` domains are never trained on.
 
     `initial` is an operator whose weights and sizes are used at the start. `weights` are weights of loss

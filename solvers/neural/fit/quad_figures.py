@@ -19,12 +19,13 @@ Grids = NDArray[np.complexfloating[Any, Any]]
 
 
 def held_out_figures(answers: Grids, base: Grids, winslow: Grids, variational: Grids) -> dict[str, Any]:
-    """Return error measures of the complex grids that a network predicts for m domains.
+    """Return error measures, by name, of the grids that a network predicts for m domains.
 
-    `answers` (m, 2, n, n) are predictions of `winslow` (m, n, n) and of `variational`, made from `base`. The
-    largest cell angle of a grid is ``max``, the mean of each cell's largest angle ``mean``. A gain is the
-    decrease of such an angle from `winslow` to the prediction of `variational`, divided by the decrease from
-    `winslow` to `variational`. Folded grids are left out.
+    Nodes are complex. `answers` (m, 2, n, n) are the network's Winslow and variational grids, made from the
+    grids `base` (m, n, n). The solvers' grids are `winslow` and `variational`. In the names, ``max``
+    is the largest cell angle of a grid, ``mean`` the mean of the largest angles of its cells. A gain is
+    (W - P) / (W - V), where W, P and V are such angles in `winslow`, in the network's variational grids, and
+    in `variational`, summed over the domains in which the first two of these grids are not folded.
     """
     solved, best = angles(winslow), angles(variational)
     valid = solved[0] < 360.0
@@ -69,11 +70,13 @@ def _share(values: Bools) -> float:
 
 
 def excess(z: Tensor, goal: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-    """Return three measures (batch,) of how much worse complex grids `z` (batch, m, n) are than `goal`.
+    """Return three measures (batch,) of how much worse angles in grids `z` are than in grids `goal`.
 
-    The first two compare the greatest angle of each cell. They are the increases, in radians, of the mean and
-    of the maximum over all cells; decreases count as 0. The third grows with the amounts by which angles
-    exceed both `WIDE` and the greatest angle of the cell in `goal`, or are below `NARROW` and its least one.
+    Both grids have complex nodes (batch, m, n). The first two measures compare the greatest angle of each
+    cell. They are the increases from `goal` to `z`, in radians, of its mean and of its maximum over all
+    cells; decreases count as 0. The third is for cells that are folded or nearly so. It grows with the
+    amounts by which a cell's greatest angle exceeds both `WIDE` and the cell's greatest angle in `goal`, and
+    by which its least angle is below both `NARROW` and the cell's least angle in `goal`.
     """
     least, most = extremes(z)
     with torch.no_grad():

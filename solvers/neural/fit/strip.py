@@ -71,7 +71,7 @@ class StripTask(Task):
         return {"loss": median, "p90": p90, "worst": worst}
 
     def answers(self) -> list[Complexes]:
-        """Return predicted Fourier modes of Winslow's minus the harmonic solution, for each held-out body."""
+        """Return, per held-out body, predicted Fourier modes of (Winslow's solution - harmonic solution)."""
         channels, scalars, size = encode(self.held_out.wall, self.held_out.far)
         with torch.no_grad():
             out = self.net(tensor(channels).to(self.device), tensor(scalars).to(self.device)).cpu()
@@ -108,12 +108,8 @@ class StripTask(Task):
 
 def run(
     model: str,  # noqa: ARG001 - there is one
-    data: Strips,
-    plan: Plan,
-    team: Team,
-    held_out: int,
-    sizes: StripSizes | None = None,
-) -> Run:
+    data: Strips, plan: Plan, team: Team, held_out: int, sizes: StripSizes | None = None,
+) -> Run:  # fmt: skip
     """Return the run that trains the network for airfoils; the last `held_out` strips are never trained on.
 
     Raises InputError if less than one batch of strips remains for training.

@@ -22,18 +22,10 @@ TRAINERS = {
 
 
 def train(
-    model: str,
-    data: Any,
-    output: Path,
-    plan: Plan,
-    team: Team,
-    *,
-    recipe: Mapping[str, Any],
-    held_out: int | None = None,
-    resume: bool = False,
-    report: Callable[[Progress], None] | None = None,
+    model: str, data: Any, output: Path, plan: Plan, team: Team, *, recipe: Mapping[str, Any],
+    held_out: int | None = None, resume: bool = False, report: Callable[[Progress], None] | None = None,
     **choices: Any,
-) -> dict[str, Any]:
+) -> dict[str, Any]:  # fmt: skip
     """Train a model, write its file, and return its error measures on held-out shapes.
 
     Raises InputError if there is no such model, if shapes are too few, if the checkpoint has another model,
@@ -51,7 +43,7 @@ def train(
     held_out : number of shapes that are not used for training; None: the default of the model.
     resume : whether to continue from the checkpoint that belongs to `output`.
     report : called every `plan.log_every` epochs and at the end.
-    choices : further parameters of the function ``run`` for this model.
+    choices : options of the model: further parameters of ``run`` in its module, such as `fit.quad`.
     """
     module = _module(model)
     held_out = module.HELD_OUT if held_out is None else held_out

@@ -80,7 +80,10 @@ class VolumeTask(Task):
         return torch.cat([0.5 * torch.exp(-self.spread) * both, 0.5 * self.spread.sum()[None]])
 
     def differentiate(self, parts: Tensor, team: Team) -> None:
-        """Compute gradients of the loss terms `parts`, without opposing components if `model.projected`."""
+        """Compute the gradients of the loss, the sum of `parts`, with respect to the parameters.
+
+        If `model.projected`, components by which gradients of two of the parts oppose each other are removed.
+        """
         if not self.model.projected:
             super().differentiate(parts, team)
             return

@@ -64,8 +64,8 @@ class Architecture:
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
         """Return the model's corrections (batch, p, 2) to an initial grid, the base grid, at p points.
 
-        `xp` is numpy or torch, `w` has all arrays of the model by name. `inputs` is the result of `encode`,
-        `places` that of `seen` for the points. For models that are defined only at the nodes of the training
-        grids, `index` (p,) has the indices of the points among these nodes.
+        `xp` is numpy or torch, `w` has all arrays of the model by name. `inputs` is what the method `encode`
+        returns for the boundaries, `places` what the method `seen` returns for the points. For models that
+        are defined only at the nodes of training grids, `index` (p,) has the points' indices among them.
         """
         raise NotImplementedError

@@ -135,14 +135,14 @@ def _waves(ni: int, nj: int, modes: int, padding: int) -> tuple[NDArray[Any], Fl
 class KNO(AlongXi):
     """Koopman neural operator along xi; `width` is the number of observables g of the inputs.
 
-    K multiplies the lowest Fourier modes, each by the same matrix. W restores the other modes. A decoder
-    computes nodes from the new observables::
+    A decoder computes the nodes from tanh(h + W g + b). h is at first g, and changes `steps` times::
 
-        tanh(h + W g + b)        h: at first g, then `steps` times h <- h + K h
+        h <- h + K h
 
-    A second decoder reconstructs the inputs from g (weight `reconstruction` in the loss). Xiong et al.,
-    Koopman neural operator as a mesh-free solver of non-linear partial differential equations, Journal of
-    Computational Physics 513 (2024) 113194.
+    K multiplies each of the lowest Fourier modes by the same trained matrix. The matrix W applies to all
+    modes; W and the vector b are trained, too. A second decoder reconstructs the inputs from g (weight
+    `reconstruction` in the loss). Xiong et al., Koopman neural operator as a mesh-free solver of non-linear
+    partial differential equations, Journal of Computational Physics 513 (2024) 113194.
     """
 
     modes: int = 16  # on which the operator acts

@@ -57,7 +57,7 @@ def coarse_grids(sides: Sides, network: Network, head: int) -> Floats:
     """Return the network's grids (batch, 2, m, n), x and y of m by n nodes, in four `sides` (batch, 2, k).
 
     `head` is the index in `encoding.HEADS` of the kind of grid, Winslow or variational. Variational grids
-    have 33 x 33 nodes. Winslow grids have as many as the sides, but from 33 to 65 per direction.
+    have 33 x 33 nodes. Winslow grids have the node counts of the sides, but at least 33 and at most 65.
     """
     base = transfinite(thinned(sides, LATENT, LATENT))
     shares = None if head == WINSLOW else _shares

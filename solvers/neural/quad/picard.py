@@ -26,7 +26,7 @@ THIRD, FOURTH = np.array([[-0.5, 1.0, 0.0, -1.0, 0.5], [1.0, -4.0, 6.0, -4.0, 1.
 def approach(
     z: Any, xp: Any, around: bool = False, steps: int = STEPS, *, harmonic: bool = True
 ) -> tuple[Any, Any]:
-    """Return grids nearer to Winslow's solution than `z`, and the last change; boundary nodes stay.
+    """Return grids nearer to Winslow's solution than `z`, and their last change; boundary nodes stay.
 
     Each Picard step inverts, by sine transforms, an operator with constant coefficients. They are the means
     over the domain of alpha / (alpha + gamma) and gamma / (alpha + gamma). Winslow's equations are::
@@ -36,8 +36,9 @@ def approach(
 
     `z` (batch, n, n) are nodes x + i y of grids of unit size, arrays of `xp`, numpy or torch. With `around`,
     `z` (batch, m + 1, n) are O grids mapped to periodic strips by i log(z - centre), so that ``z[:, m]`` is
-    ``z[:, 0]`` plus one period. Without `harmonic`, steps do not start from the harmonic grid, but from `z`,
-    and are accelerated by Anderson's method with one previous iterate, J. ACM 12 (1965) 547-560.
+    ``z[:, 0]`` plus one period. With `harmonic`, steps start from the solution of z_xixi + z_etaeta = 0 that
+    has the boundary of `z`. Without it, they start from `z`, and are accelerated by Anderson's method with
+    one previous iterate, J. ACM 12 (1965) 547-560.
     """
     if xp is np:
         return _compiled(z, around, steps, harmonic)
@@ -79,7 +80,7 @@ def _extrapolated(correction: Any, step: Any, move: Any, xp: Any) -> Any:
 
 
 def nodes_after(n: int) -> int:
-    """Return the nodes per direction for the Picard steps after the network; the sides have `n` nodes."""
+    """Return the node count `n` of a side, but from 33 to 65, for the Picard steps after the network."""
     return min(max(n, LATENT), FINER)
 
 

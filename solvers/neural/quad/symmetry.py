@@ -69,9 +69,10 @@ SEEN: Floats = np.stack([_seen(element) for element in ELEMENTS])  # (8, FEATURE
 
 
 def table(size: int) -> Integers:
-    """Return the flat index in w (8, size, size) of each entry of a convolution kernel K (8, 8, size²).
+    """Return the index (8, 8, size²) of the parameter at each place of an equivariant convolution kernel.
 
-    The kernel is K[h, g](p) = w[h⁻¹ g](h⁻¹ p) at position p, with symmetries h and g of the square.
+    The kernel has an output channel h and an input channel g for each of the 8 symmetries of a square. At
+    position p it is K[h, g](p) = w[h⁻¹ g](h⁻¹ p). Indices are those of the flat parameters w (8, size, size).
     """
     count = size * size
     return np.asarray(RELATIVE[:, :, None] * count + TAPS[size].reshape(ORDER, 1, count))
@@ -80,8 +81,9 @@ def table(size: int) -> Integers:
 def convolution(weight: Any, places: Any, xp: Any) -> Any:
     """Return the kernel (8 * out, 8 * in, size, size) of a convolution that commutes with turns and mirrors.
 
-    `weight` (out, in, 8, size, size) are its parameters for the 8 symmetries of a square. `places`, from
-    `table`, says which of the 8 * size * size parameters is at each place of the kernel.
+    Channels are in sets of 8, one for each symmetry of a square. `weight` (out, in, 8, size, size) has the
+    parameters for each pair of sets. `places` (8, 8, size²), from `table`, has the index of the parameter at
+    each place of the kernel of a pair.
     """
     out, into, _, size, _ = weight.shape
     spread = weight.reshape(out, into, -1)[:, :, places]
@@ -89,7 +91,10 @@ def convolution(weight: Any, places: Any, xp: Any) -> Any:
 
 
 def lift(weight: Any, seen: Any) -> Any:
-    """Return the first layer (8 * out, FEATURES): `weight` (out, FEATURES) times 8 symmetries `seen`."""
+    """Return the first layer (8 * out, FEATURES): `weight` (out, FEATURES) times each of 8 matrices `seen`.
+
+    The matrices (8, FEATURES, FEATURES) transform the features of a node by the symmetries of a square.
+    """
     return (weight[:, None, :, None] * seen).sum(2).reshape(ORDER * len(weight), -1)
 
 

@@ -40,11 +40,12 @@ def unrolled(z: Any, centres: Any, xp: Any = np) -> tuple[Any, Any]:
 
 
 def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any = np) -> tuple[Any, Any, Any]:
-    """Return closed lines mapped by i log(z - centre), the centres (batch,), and a mask (see `unrolled`).
+    """Return closed lines mapped by i log(z - centre), the centres (batch,), and a mask (batch,).
 
     `walls` (batch, m + 1, n) are n closed lines around a body, of m + 1 complex nodes whose last repeats the
-    first. The centre is the centroid of the body's outline `wall` (batch, ni). If one of the lines does not
-    wind exactly once around it, the centre is the result of `inside` for the nodes of the first line.
+    first. The centre is the centroid of the body's outline `wall` (batch, ni) if all lines wind exactly once
+    around it, else the result of `inside` for the nodes of the first line. The mask is false if a line does
+    not wind once around this point either; the mapped lines are then useless.
     """
     centres = middles(wall[:, :-1], xp)
     strips, once = unrolled(walls, centres, xp)

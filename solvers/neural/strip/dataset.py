@@ -78,9 +78,10 @@ def _solved(boundary: Boundary) -> tuple[Complexes, Complexes, Complexes] | None
 class StripTargets:
     """Training data: inputs, as `encode` returns them, and wanted outputs (n, 2 Q, COLUMNS).
 
-    The wanted outputs represent R, Winslow's solution minus the harmonic extension of the walls, divided by
-    ``scale * size**2``, with `size` from `encode`. At COLUMNS points along the strip, they are coefficients,
-    real parts first, of the Q functions `basis` (Q, LEVELS - 2) across it (proper orthogonal decomposition).
+    Regions around bodies are mapped to periodic strips. R is Winslow's solution in a strip, minus the
+    harmonic extension of its walls. At COLUMNS points along the strip, R / (scale * size**2) is a combination
+    of Q functions across it, `basis` (Q, LEVELS - 2), from proper orthogonal decomposition. The wanted
+    outputs are the real parts, then the imaginary parts, of its coefficients. `size` is from `encode`.
     """
 
     channels: Floats
@@ -91,7 +92,10 @@ class StripTargets:
 
 
 def make_targets(strips: Strips, count: int) -> StripTargets:
-    """Return training data for `strips` and their mirror images, with `count` basis functions (`basis`)."""
+    """Return training data from `strips`, which are solutions around bodies, and from their mirror images.
+
+    `count` is the number of basis functions across a strip whose coefficients are the wanted outputs.
+    """
     # the mirror image F(theta) -> conj F(-theta) turns mode c_k into conj c_k
     wall, far, residual = (np.concatenate([c, c.conj()]) for c in (strips.wall, strips.far, strips.residual))
     channels, scalars, size = encode(wall, far)

@@ -19,13 +19,13 @@ SLOPE = 0.3  # factor of slopes, which are larger than values by about their wav
 def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
     """Return the network's inputs for strips whose walls have the Fourier modes `wall` and `far`.
 
-    `wall` (body) and `far` (far field) have the shape (batch, 2 MODES + 1). The periodic coordinate is theta.
-    The size is the root mean square deviation of the walls from straight lines. The inputs are three arrays:
+    A strip is the image of the region around a body, and periodic in theta. `wall` (body) and `far` (far
+    field) have the shape (batch, 2 MODES + 1). The inputs are three arrays:
 
     - channels (batch, CHANNELS, COLUMNS): the harmonic extension of the walls at the fractions `DEPTHS` of
-      the height, and its derivative along theta, both divided by the size;
+      the height, and its derivative along theta, both divided by `size`;
     - scalars (batch, SCALARS): log(size), the strip's height, and the shift of `far` along theta;
-    - size (batch,).
+    - size (batch,): the root mean square deviation of the walls from straight lines.
     """
     mean = (far - wall)[:, 0]
     a, b = (xp.concatenate([xp.zeros_like(side[:, :1]), side[:, 1:]], 1) for side in (wall, far))

@@ -15,7 +15,8 @@ GATE = 0.3  # factor of b tanh(a)
 class StripNetwork:
     """A Fourier neural operator along theta, the periodic coordinate of strips, with given `weights`.
 
-    W, E, P are pointwise linear maps; K, K' are spectral convolutions; a, b are halves of the channels::
+    W, E and P are linear maps at each point along theta. conv5 is a convolution over 5 points. K and K'
+    multiply each low Fourier mode by a matrix. a and b are halves of the channels::
 
         h <- a * b + gelu(a)                                  [a, b] = W (input)
         h <- h + E gelu(a + K h) + 0.3 b tanh(a)              three times, [a, b] = conv5(h)
@@ -96,7 +97,8 @@ def gelu(x: Any, xp: Any) -> Any:
 def spectral(mixing: Any, h: Any, xp: Any) -> Any:
     """Multiply the channels of each Fourier mode of `h` (c, batch, n) by a matrix; return (d, batch, n).
 
-    `mixing` (modes, 2 c, 2 d) has a matrix for each mode, in which real and imaginary parts alternate.
+    `mixing` (modes, 2 c, 2 d) has a complex matrix (c, d) for each of the lowest modes, written with real
+    numbers: each entry p + i q is the block [[p, q], [-q, p]]. Higher modes become 0.
     """
     spectrum = xp.fft.rfft(h)[..., : len(mixing)].swapaxes(0, 2)
     parts = xp.stack([spectrum.real, spectrum.imag], -1).reshape(len(mixing), h.shape[1], -1)
