@@ -120,7 +120,7 @@ class QuadMesh:
 
     @cached_property
     def irregular(self) -> Bools:
-        """Whether each node (n,) is irregular: inside if not 4 quads meet at it, on the boundary if not 2."""
+        """Whether each node (n,) is irregular. A regular node belongs to 4 quads, or to 2 on the boundary."""
         return self.valence != np.where(self.wall_nodes, 2, 4)
 
     @cached_property
@@ -159,7 +159,7 @@ class QuadMesh:
         return nodes
 
     def with_nodes(self, nodes: Floats, arc: Floats | None = None) -> QuadMesh:
-        """Return the same quads with other `nodes` (n, 2) and, if given, their new arc lengths `arc` (n,)."""
+        """Return the mesh with new `nodes` (n, 2); `arc` (n,): arc lengths along the boundary, 0 inside."""
         places = self.places if arc is None else replace(self.places, arc=arc)
         return self.with_places(nodes, places)
 

@@ -37,10 +37,9 @@ def find_kinks(points: Floats, *, few: int = FEW) -> Indices:
 def straight_intervals(points: Floats, corners: Indices) -> Bools:
     """Return which intervals (n,) of a closed polygon `points` (n, 2) are straight lines.
 
-    A straight interval is at least `LONG` times as long as the one before or after it, with no corner between
-    the two (`corners` are indices of points). Take, at an end that is no corner, the circular arc from it
-    through the next two points. The polygon turns at this end by at most `EXPLAINED` times as much as if the
-    arc were tangent to the interval.
+    A straight interval is at least 4 times as long as the one before or after it, with no corner between the
+    two. At its ends, except at corners, it must be nearly tangent to the circular arc from there through the
+    next two points. `corners` are indices of points.
     """
     turn, joined = turning(points, closed=True), np.ones(len(points), dtype=bool)
     turn[corners], joined[corners] = 0.0, False

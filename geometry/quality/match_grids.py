@@ -13,9 +13,9 @@ Pairing: TypeAlias = Literal["auto", "name", "order"]
 class GridMatcher:
     """Finds, for each grid, the grid of a reference set with which it is compared.
 
-    Pairing is by ``name`` or by ``order``. With ``auto``, a single reference serves all grids. Several are
-    paired by name if the first two differ in name and one of all has the name of the first grid, otherwise by
-    order. `grids` yields the references, which are read only as far as needed.
+    Pairing is by ``name`` or by ``order``. With ``auto``, one reference serves all grids. Several are paired
+    by name if the first two references differ in name and any reference has the name of the first grid, else
+    by order. `grids` yields the references, which are read only as far as needed.
     """
 
     def __init__(self, grids: Iterator[Grid], pairing: Pairing = "auto") -> None:
@@ -24,7 +24,7 @@ class GridMatcher:
         self._passed: list[Grid] = []
 
     def match(self, name: str) -> Grid:
-        """Return the reference for the next grid, called `name`. Raises InputError if no reference fits."""
+        """Return the reference for the grid `name`, the next to be compared. Raises InputError: none fits."""
         if self._pairing == "auto":
             self._pairing = self._decided(name)
         if self._pairing == "name":

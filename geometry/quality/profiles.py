@@ -73,7 +73,7 @@ class CheckResult:
         return max(broken, key=lambda limit: limit.level == "fail", default=None)
 
     def under(self, gates: Sequence[Gate]) -> "CheckResult":
-        """Return the result, judged by the user's limits if `gates` has any on the same value."""
+        """Return the result, judged by the user's limits `gates` instead if any of them concern its value."""
         compare = self.check.limits[0].compare
         own = [gate for gate in gates if gate.replaces(self.check.figure, compare)]
         limits = tuple(Limit("fail", gate.compare, gate.limit) for gate in own)
@@ -170,7 +170,7 @@ PROFILES: dict[str, tuple[Check, ...]] = {
 
 
 def profile_report(figures: Figures, *profiles: str) -> ProfileReport:
-    """Return the results of a grid in `profiles` (sets of limits). Raises InputError: no such profile."""
+    """Compare measures `figures` of a grid with the limits in `profiles`. Raises InputError: unknown name."""
     for profile in profiles:
         if profile not in PROFILES:
             known = "use one of " + ", ".join(PROFILES)

@@ -165,8 +165,8 @@ class BladeSurface:
     def crossings(self, lines: CubicTable, h: Floats, levels: int = 1) -> Floats:
         """Return points s, theta (..., 2) of m splines along the span of the blade, at heights `h` (...).
 
-        `lines` are the splines, from the method `lines`. `h`, 0 at the hub and 1 at the casing, has `levels`
-        rows of m values, or with one level any shape of m values. s is 0 at the inlet and 1 at the outlet.
+        `lines` are the splines, from the method `lines`. `h` (`levels`, m) is 0 at the hub and 1 at the
+        casing. With one level, it may have any shape of m elements. s is 0 at the inlet and 1 at the outlet.
         """
         out = np.empty((*h.shape, 2))
         spline_crossings(

@@ -21,7 +21,7 @@ def on_cylinder(
     section : the airfoil with its chord; its z is the radius of the cylinder.
     about : a point of the section, (x, y) in chords from the leading edge.
     stagger : angle of the chord from the axis, towards growing theta, in radians.
-    x, theta : where this point lies on the cylinder around the x axis; theta = atan2(y, z) in radians.
+    x, theta : where the point `about` lies on the cylinder around the x axis; theta = atan2(y, z) in radians.
     """
     origin, length = section.frame
     shape, notes = section.shape, section.shape.notes

@@ -41,7 +41,7 @@ class Row:
     frame : Motion, optional
         Rotation from the coordinates of the grid to the coordinates of the row; None: no rotation.
     unit : {'m', 'cm', 'mm', 'in', 'ft'}, optional
-        Unit of lengths in reports. If it is given, the row must be in metres. Empty: the unit of the row.
+        Unit in which reports give lengths, for a row in metres. Empty: reports give lengths as the row does.
 
     Raises
     ------

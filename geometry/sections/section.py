@@ -88,7 +88,10 @@ class Section:
 
     @property
     def placement(self) -> Floats:
-        """Array (6,): chord, twist in radians, leading edge x and y, centre of twist x and y (as `about`)."""
+        """Array (6,): chord, twist in radians, leading edge x and y, and centre of twist x and y.
+
+        The centre of twist is in chords from the leading edge.
+        """
         return np.array([self.chord, math.radians(self.twist), self.x, self.y, *self.about])
 
 

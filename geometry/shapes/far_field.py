@@ -60,9 +60,9 @@ def o_boundary(
     """Return the O boundary of a closed, clockwise `wall` (ni, 2), with equal steps on a circle as far field.
 
     If `turned`, the first far-field node is the image of `wall[0]` under the conformal map of the body, so
-    that the grid is not sheared. A large turn is noted. Otherwise that node is in the direction of `wall[0]`
-    from the centre, which suffices for marching. West and east are the straight cut from `wall[0]` to the
-    far field. `curve` (the exact wall), `name`, `chord` and `notes` are stored in the result.
+    that the grid is not sheared. Otherwise that node is in the direction of `wall[0]` from the centre, which
+    suffices for marching. West and east are the straight cut from `wall[0]` to the far field. `curve` (the
+    exact wall), `name`, `chord` and `notes` are stored in the result.
     """
     middle = np.asarray(centre, dtype=np.float64)
     start, note = math.atan2(wall[0, 1] - middle[1], wall[0, 0] - middle[0]), ""

@@ -40,9 +40,9 @@ def cells_of_wake(
 ) -> int:
     """Return the number of cells along the wake of a C grid with `ni` nodes along xi.
 
-    A given `nodes_wanted` is the number of nodes on the wake. Otherwise cells that grow by 13.5 % from the
-    length `first` fill `length`, but they are 20 to 23 % of all cells along xi. Their number is rounded to a
-    multiple of the largest of `steps` up to a quarter of it. Raises InputError: too few nodes for the wall.
+    If `nodes_wanted`, the number of nodes on the wake, is None, cells grow by 13.5 % from the length `first`
+    and fill `length`. Their number is limited to 20 to 23 % of all cells along xi, and is rounded to a
+    multiple of one of `steps`. Raises InputError: too few nodes for the wall.
     """
     if nodes_wanted is not None:
         cells = nodes_wanted - 1

@@ -24,7 +24,7 @@ def stretch_arcs(
     forward: bool = True,
     step: int = 1,
 ) -> Floats:
-    """Return arc lengths (cells + 1,) of nodes on a closed curve from `begin` to `end`, or once around.
+    """Return arc lengths (cells + 1,) of nodes on a closed curve from `begin` to `end`; once around if equal.
 
     Unless `forward`, nodes run against the curve. With the spacing ``tanh``, end cells have a quarter of the
     mean length. The spacings ``auto`` and ``conformal`` give equal steps. The indices of nodes at corners are

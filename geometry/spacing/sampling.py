@@ -37,9 +37,9 @@ class Sampling:
     topology : {'auto', 'quad', 'o', 'c'}, optional
         Topology of the grid; ``auto``: the topology that suits the shape.
     spacing : str, optional
-        Distribution of nodes along a wall, as for the option ``--spacing``. ``auto`` is ``conformal`` around
-        airfoils and smooth bodies; ``tanh`` around airfoils if `le_spacing` or `te_spacing` is given;
-        ``curvature`` in C grids and with a first-cell height; ``uniform`` elsewhere.
+        Distribution of nodes along a wall, as for the option ``--spacing``. ``auto`` is ``curvature`` in C
+        grids and with a first-cell height. Otherwise it is ``tanh`` around airfoils if `le_spacing` or
+        `te_spacing` is given, ``conformal`` around other airfoils and smooth bodies, and else ``uniform``.
     le_spacing, te_spacing : float, optional
         Length of the wall cells at the leading and at the trailing edge, in chords.
     far_field : float, optional
@@ -54,7 +54,7 @@ class Sampling:
     wake : float, optional
         Length of the wake of a C grid in chords; None: the far-field distance.
     wake_nodes : int, optional
-        Number of nodes from the trailing edge to the end of the wake. None: set by cells at this edge.
+        Number of nodes from the trailing edge to the end of the wake. None: a number that suits its length.
     base_nodes : int, optional
         Number of nodes across a blunt trailing edge, corners included; odd for an O grid. None: by its width.
     base : float, optional

@@ -52,8 +52,8 @@ def turned_alike(
 def closing_axes(nodes: Floats, sides: Indices, planes: Sequence[Plane]) -> list[int]:
     """Return the directions (0, 1, 2 for x, y, z) of the normals of planes of symmetry that close a surface.
 
-    `sides` is the result of `open_sides`. If one plane contains all open edges except the rim of a small
-    hole, such as the end of half a fuselage, only the direction for this plane is returned.
+    `sides` is the result of `open_sides`. If the open edges outside one plane are only the rim of a small
+    hole, only this plane's direction is returned. Half a fuselage that is open at its end is an example.
     """
     axes = sorted({plane.axis for plane in planes})
     slack = FLAT * extent_of(nodes)

@@ -28,7 +28,7 @@ class Plane:
 
 
 def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
-    """Return the planes normal to an axis that contain open edges and have the surface on one side.
+    """Return the planes of constant x, y or z that bound a surface and contain some of its open edges.
 
     `sides` is the result of `open_sides`. An edge in several planes counts for the plane with the most edges.
     Planes with fewer than `FEWEST` edges, such as blunt trailing edges, are left out.
@@ -62,7 +62,7 @@ def edges_in(nodes: Floats, sides: Indices, plane: Plane, slack: float) -> Indic
 
 
 def slant(nodes: Floats, sides: Indices, plane: Plane) -> float:
-    """Return the mean angle in degrees between a plane's normal and the faces at open edges in the plane."""
+    """Return the mean angle in degrees by which faces at open edges in a plane are not normal to it."""
     mine = sides[edges_in(nodes, sides, plane, FLAT * extent_of(nodes))]
     a, b, c, d = (nodes[mine[:, k]] for k in range(4))
     normal = np.cross(c - a, d - b)

@@ -35,11 +35,11 @@ class _FanPatch:
 def without_poles(
     patches: Sequence[Floats], *, replace: bool = True
 ) -> tuple[list[Floats], list[int], tuple[str, ...]]:
-    """Return the patches without poles, the index of the original patch for each of them, and notes.
+    """Return `patches` (ni, nj, 3) without poles, an index in `patches` for each returned patch, and notes.
 
-    A pole is a side of a patch (ni, nj, 3) that is a single point. For each pole, a core patch is
-    appended, with the index of a patch that had this pole. Without `replace` nothing is done. Raises
-    InputError: too few cells around a pole, or an odd number.
+    A pole is a side that is a single point. New cells replace those around it. The cells in the middle form a
+    new patch, the core, whose index is that of a patch that had the pole. Cores come last. Without `replace`,
+    nothing is done. Raises InputError: too few cells around a pole, or an odd number.
     """
     out, owners, notes = list(patches), list(range(len(patches))), []
     while replace and (fan := _next_fan(out)):

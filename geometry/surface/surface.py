@@ -82,8 +82,8 @@ def surface_of(grid: Grid, *, poles: Literal["replace", "refuse"] = "replace") -
     reversed along i. Notes report these changes. Normals point outwards if the surface is closed, or if
     planes of symmetry close it, all normal to one axis. Otherwise most cells keep their orientation. Raises
     InputError: a block that is not a patch; an edge of zero length or of three quads; parts that touch only
-    at a node; sides that nearly match, or meet with different nodes; a trailing edge whose ends differ; no
-    orientation.
+    at a node; sides that nearly match, or meet with different nodes; an open trailing edge with different
+    numbers of nodes across its two ends; no consistent orientation.
     """
     if any(block.nodes.ndim != 3 or block.nodes.shape[-1] != 3 for block in grid.blocks):
         problem = "a surface is made of patches (ni, nj, 3), and a block of this grid is none"

@@ -23,7 +23,7 @@ class DrawnInputs:
         return len(self.draws) // self.shard[1]
 
     def parts(self, size: int) -> Iterator[tuple[int, tuple[Draw, ...]]]:
-        """Yield index and shapes of every n-th part of `size` shapes from the k-th on; `shard` is (k, n)."""
+        """Yield index and shapes of each part that this job makes; parts have at most `size` shapes."""
         k, n = self.shard
         for number in range(k - 1, -(-len(self.draws) // size), n):
             yield number, tuple(self.draws[number * size : (number + 1) * size])

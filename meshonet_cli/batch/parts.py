@@ -57,7 +57,7 @@ class PartMaker:
     def __call__(self, part: PartTask) -> PartDone:
         """Make a part atomically.
 
-        Raises OtherPartsError: it exists without `skip_existing`, or differs; InputError: writing fails.
+        Raises OtherPartsError if it exists (with `skip_existing`: and differs), InputError if writing fails.
         """
         inputs = [each for entry in part.inputs for each in digests_of(entry)]
         state = self.files.state(part.number, inputs)
@@ -122,7 +122,7 @@ def deliver_parts(
     written : called with the report of each successful member and the path of the file.
     whole : whether this command makes all parts, not only a share of them.
 
-    Raises OtherPartsError: a part exists without `skip_existing`, or has other inputs or settings.
+    Raises OtherPartsError if a part exists; with `skip_existing`, only if its inputs or settings differ.
     """
     files.check(skip_existing=skip_existing)
     session.batch, session.dataset = True, str(files.index)

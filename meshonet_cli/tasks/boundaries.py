@@ -44,7 +44,7 @@ def write_boundaries(batch: Batch, sampling: Sampling, sensors: int | None = Non
 
 
 def itself(member: Draw) -> Iterator[Draw]:
-    """Yield `member`, which was drawn from a family and need not be read."""
+    """Yield `member`, a random shape, unchanged: for such shapes, this takes the place of reading a file."""
     return iter([member])
 
 

@@ -42,10 +42,7 @@ class StageLine:
             self._clear()
 
     def text(self) -> str:
-        """Return the text of the line: elapsed time, stage and progress.
-
-        In the first second, the text is only `detail`; later, `detail` stands in place of unknown progress.
-        """
+        """Return the text of the line: elapsed time, stage, and progress or, if unknown, `detail`."""
         stage, now = self._stage, time.perf_counter()
         spent = now - self._begun
         if spent < DELAY:

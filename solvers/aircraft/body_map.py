@@ -73,7 +73,7 @@ class BodyMap:
         return np.clip(_between(self._arcs, along, np.zeros_like(s))[:, 0], 0.0, self.body.length)
 
     def around(self, places: Floats) -> Floats:
-        """Return distances (...) from the body's axis to `places` (..., 3): s, theta, zeta of `BodyMap`."""
+        """Return distances (...) from the body's axis; `places` (..., 3) are s, theta, zeta of `BodyMap`."""
         points = self.points(places)
         return np.hypot(points[..., 1] - self.body.y, points[..., 2])
 

@@ -39,7 +39,7 @@ Within: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 
 @dataclass(frozen=True)
 class Rectangle:
-    """Limits of a rectangle around a wing's section, along and around the body, in the unit of x, y, z."""
+    """A rectangle that encloses a wing's section: limits along the body, and arc lengths around the body."""
 
     front: float
     back: float
@@ -65,11 +65,11 @@ def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
 
 
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
-    """Return from which nodes of a wing's section lines lead to the corners of the rectangle `box`.
+    """Return two numbers that say where, on a wing's section, lines to the corners of `box` begin.
 
-    The first number says how many nodes from the middle of the trailing edge the lines to both rear corners
-    begin. The second says how many nodes from the nose the lines to both front corners begin. Both are at
-    least `fewest`. Cells on both sides of a corner are similarly long. `root` (n, 2) is the section.
+    Lines to the rear corners begin as many nodes away from the middle of the trailing edge as the first says.
+    Lines to the front corners begin as many nodes away from the nose as the second says. Both are at least
+    `fewest`. Cells on both sides of a corner are similarly long. `root` (n, 2) is the section.
     """
     normals, half = _normals(root), (len(root) - 1) // 2
     tried = np.arange(fewest, half // 3 + 1)
@@ -90,13 +90,13 @@ def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
 
 
 def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]:
-    """Return the cell lengths along the rear and front side of `box`, which have 2 `corners` cells."""
+    """Return cell lengths on the rear and front side of `box`; half of each side has `corners` cells."""
     edge, nose = corners
     return (box.high - box.low) / (2 * edge), (box.high - box.low) / (2 * nose)
 
 
 def outer_loop(root: Floats, box: Rectangle, corners: tuple[int, int]) -> Floats:
-    """Return nodes (n, 2) on the rectangle `box`, one for each node of the section `root` (n, 2) in it.
+    """Return nodes (n, 2) on the rectangle `box`, one for each node `root` (n, 2) of a wing's section in it.
 
     Coordinates are along and around the body. The first half of `root` runs from the middle of the trailing
     edge along the upper side to the nose. For `corners` see `corner_nodes`.
@@ -138,15 +138,14 @@ def _shifted(places: Floats, box: Rectangle, towards: float) -> Floats:
 def collar(
     root: Floats, outer: Floats, rows: int, first: float, last: Floats, straight: float = 0.0
 ) -> tuple[Floats, float]:
-    """Return nodes (n, rows + 1, 2) of a grid between the closed loops `root` and `outer` (n, 2), and a sine.
+    """Return nodes (n, rows + 1, 2) between the closed loops `root` and `outer` (n, 2), and a sine.
 
-    Nodes are placed on the lines of a preliminary grid. The sine is that of its smallest angle.
+    Nodes are placed on the lines of a preliminary grid. The sine is that of the smallest angle in this grid.
 
     Parameters
     ----------
     first, last : lengths of cells at the root, and (n,) at the outer loop.
-    straight : lines of the preliminary grid. 0: of an elliptic grid; 1: parabolas normal to the root;
-        between: a mixture.
+    straight : 0: this grid is elliptic; 1: its lines are parabolas normal to the root; between: a mixture.
     """
     arcs, lines = _lines(root, outer, straight)
     wanted = _rows(arcs, rows, first, last)

@@ -37,10 +37,10 @@ _WEDGE_POINTS = 9  # on each side of a wedge
 
 
 def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
-    """Return a section with rounded corners at its blunt trailing edge (base), and half the rounded length.
+    """Return a section with rounded corners at its blunt trailing edge (base), and half the base's length.
 
-    `curve` and the result are closed and begin in the middle of the base. The second and the last point of
-    `curve` are its corners. The length is that from the middle to the end of the first rounded corner.
+    `curve` and the returned curve are closed and begin in the middle of the base. The second and the last
+    point of `curve` are the corners. The base now includes the arcs that round them.
     """
     length, half = curve.length, float(curve.knots[1])
     across = min(_ACROSS * half, _CAP * chord)

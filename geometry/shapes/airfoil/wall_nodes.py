@@ -20,9 +20,9 @@ def wall_arcs(body: Airfoil, ni: int, sampling: Sampling) -> Floats:
     """Return the arc lengths (ni,) of the wall nodes, from 0 to the length of the curve.
 
     With the spacing ``conformal``, nodes have equal angles in a conformal map to the circle. ``tanh`` and
-    ``auto`` stretch each side between its end cells. ``cosine`` is ``tanh`` if a cell size is given or the
-    edge is blunt. ``curvature``: see `geometry.spacing.size_field`. `le_spacing` and `te_spacing` are met
-    within 1 %. Raises InputError: too few nodes, in general or for these cell lengths.
+    ``auto`` stretch each side between its end cells. ``tanh`` replaces ``cosine`` if a cell length is given
+    or the trailing edge is blunt. ``curvature``: see `geometry.spacing.size_field`. The given cell lengths,
+    `le_spacing` and `te_spacing`, are met within 1 %. Raises InputError: too few nodes.
     """
     least = 7 if body.half_base else 5
     if ni < least:

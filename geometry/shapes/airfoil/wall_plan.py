@@ -43,7 +43,7 @@ _SMALLER = 64.0  # largest factor by which cells beside a base are smaller for t
 
 @dataclass(frozen=True)
 class WallCells:
-    """Numbers of cells on half the base (blunt trailing edge) and on each side, and lengths of cells."""
+    """Numbers of cells per side of an airfoil and on half its blunt trailing edge; lengths of end cells."""
 
     half: int
     cells: float
