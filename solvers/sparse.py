@@ -25,8 +25,8 @@ class SparsePattern:
     Attributes
     ----------
     arrays : the pattern as arrays for compiled code.
-    slot : (m,) index of each entry's position among the different positions.
-    entries : number of different positions.
+    slot : (m,) index of the stored value to which each entry is added.
+    entries : number of stored values.
 
     >>> pattern = SparsePattern(2, np.array([0, 0, 1]), np.array([0, 1, 1]))
     >>> pattern.factor(np.array([2.0, 1.0, 2.0])).solve(np.array([3.0, 3.0])).tolist()

@@ -248,7 +248,7 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
     Raises
     ------
     InputError
-        A value out of its range; parameters that need or exclude each other.
+        A value out of its range; parameters that exclude each other or lack another that they need.
     """
 
     def __post_init__(self) -> None:

@@ -14,13 +14,12 @@ def exact_in_corners(
     nodes: Floats, begins: tuple[Floats, Floats], sizes: tuple[float, Floats],
     in_space: Callable[[Floats], Floats],
 ) -> Floats:  # fmt: skip
-    """Return `nodes`, each moved towards or away from two points until it has given distances from both.
+    """Return `nodes`, each moved so that it has the distances `sizes` from two points.
 
     Parameters
     ----------
-    nodes : (..., 3) nodes in any coordinates.
-    begins : (..., 3) first point, and (..., 3) second point for each node, in the same coordinates.
-    sizes : distances from the first points (a number) and from the second points (an array).
+    nodes, begins : (..., 3) nodes, and the first and second point of each node, in the same coordinates.
+    sizes : distance from the first point (one number for all nodes) and from the second point (an array).
     in_space : maps coordinates to x, y, z.
     """
     starts, before = [in_space(begin) for begin in begins], np.inf

@@ -20,7 +20,7 @@ _ROUNDS = 4
 
 @dataclass(frozen=True, eq=False)
 class GapEnds:
-    """Nodes inside the blade's outline on both surfaces that bound a gap: blade end, and hub or casing."""
+    """Nodes on the blade's end and on the hub or casing across a gap, inside the blade's outline."""
 
     fill: GapFill  # numbering of the nodes; those of the outline come first
     # low, high: (n, 2) s and theta on the lower and on the upper surface
@@ -38,7 +38,7 @@ class GapBlocks:
 
 
 def gap_ends(row: Row, places: SpanPlaces, zone: Zone, first: float, growth: float) -> GapEnds:
-    """Return nodes inside the blade's outline on both surfaces of a gap: the blade's end, and hub or casing.
+    """Return nodes on the blade's end and on the hub or casing across a gap, inside the blade's outline.
 
     Parameters
     ----------

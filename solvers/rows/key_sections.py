@@ -95,12 +95,12 @@ def planned(
 ) -> tuple[KeySection, tuple[SectionPlan, SectionPlan]]:  # fmt: skip
     """Return a first grid of the middle section, with about `cells` cells, and two plans for all sections.
 
-    The first plan is better, but layers may be folded where nodes have to move far.
+    In the first plan, cells around the blade grow more slowly; with the second, cells fold less often.
 
     Parameters
     ----------
     coarse : result of `coarse_section` for the middle section; None: it is computed.
-    longest : length of the longest straight grid lines of all sections, at `INLET` and `OUTLET` (keys).
+    longest : by key, `INLET` or `OUTLET`: length of the longest straight grid lines there in any section.
     wake : as in `SectionPlan`.
     gaps : whether the blade ends in a gap at the hub, and at the casing.
     """

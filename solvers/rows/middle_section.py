@@ -29,9 +29,10 @@ _TRIES, _NEAR = 4, 0.03  # largest number of choices of counts; sufficient relat
 
 
 def coarse_section(plane: SectionPlane, *, early: bool = True) -> Layout:
-    """Return a coarse, optimised block layout of a section; with `early`, nodes first move to blade corners.
+    """Return a coarse, optimised block layout of a section, without layers at the blade.
 
-    Raises InputError if there is no room for inlet or outlet; NoValidGridError if cells are folded.
+    With `early`, nodes are put at corners of the layers' outer edge before the optimisation. Raises
+    InputError if there is no room for inlet or outlet; NoValidGridError if cells are folded.
     """
     return _sized(template(plane.cascade.passage, at_corners=early), FIRST, None)
 
@@ -43,7 +44,7 @@ def middle_section(
 
     Parameters
     ----------
-    longest : length of the longest straight grid lines of all sections, at `INLET` and `OUTLET` (keys).
+    longest : by key, `INLET` or `OUTLET`: length of the longest straight grid lines there in any section.
     coarse : result of `coarse_section`; None: it is computed.
 
     Raises NoValidGridError if cells are folded.

@@ -21,7 +21,7 @@ _IN_GAP = 5  # number of heights in a gap at which lines are measured
 
 @dataclass(frozen=True, eq=False)
 class NodeGroup:
-    """Some nodes of a row that are computed together."""
+    """Some grid nodes of a blade row that are computed together."""
 
     row: Row  # the row
     zones: Sequence[Zone]  # zones of the span, from hub to casing

@@ -14,10 +14,10 @@ FARTHEST = 0.2
 def opposite_places(places: Floats, pairs: Indices, lines: ChannelLines) -> Floats:
     """Return places u (k,) of nodes clockwise around a blade; for each node at u there is one at 1 - u.
 
-    u is 0 at the leading edge, 0.5 at the trailing edge and 1 at the leading edge again. k is even. `pairs`
-    (p, 2) are a node on the upper side, and the node on the next blade's lower side to which a grid line
-    leads. The first pair is nearest to the leading edge. These grid lines deviate from `lines` as little as
-    possible. If possible, no node moves farther than `FARTHEST`.
+    u is 0 at the leading edge and 0.5 at the trailing edge. k is even. Grid lines across the channel join the
+    nodes of `pairs` (p, 2), from a blade's upper side to the next blade's lower side. The first pair is
+    nearest to the leading edge. The result makes these grid lines as similar as possible to `lines`, which
+    are nearly normal to both blades. If possible, no node moves farther than `FARTHEST` from `places` (k,).
     """
     both = _both_sides(places)
     k, half = len(places), len(places) // 2

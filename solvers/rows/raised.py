@@ -36,13 +36,13 @@ class Rise:
 
     @classmethod
     def of(cls, row: Row, zone: Zone, blade: Zone, around: SpanLines, lines: SpanLines) -> Self:
-        """Return the displacements of the layers next to a gap between the blade and hub or casing.
+        """Return displacements, along the span, of nodes in the blade's wall layers next to a gap.
 
         Parameters
         ----------
         row, zone, blade : the row, and the height ranges (zones) of the gap and of the blade.
-        around : places, 0 to 1 around the blade, where k grid lines leave it, as functions of the height.
-        lines : s (along the channel) and theta of the k * (layers + 1) nodes on these lines, likewise.
+        around, lines : functions of the height, for k grid lines off the blade: places, 0 to 1 around it,
+            where they begin; s (along the channel) and theta of all their k * (layers + 1) nodes.
         """
         end, up, width = (blade.high, 1.0, row.tip_gap)
         if zone.low == 0.0:
@@ -55,11 +55,11 @@ class Rise:
         return cls(end, up, zone.high - zone.low, deep, moves)
 
     def of_columns(self, part: slice) -> Self:
-        """Return the displacements of the columns in the slice `part`."""
+        """Return the displacements of nodes on some of the grid lines from the blade: the slice `part`."""
         return replace(self, deep=self.deep[part], moves=self.moves[part])
 
     def shares(self, heights: Floats) -> Floats:
-        """Return factors of displacements at `heights` (levels, k), from 1 at the blade's end to 0."""
+        """Return factors of displacements at `heights` (levels, k): 1 where blade and gap meet, 0 far off."""
         off = self.up * (heights - self.end)
         away = np.where(off > 0.0, off / self.gap, -off / self.deep)
         return np.asarray(smooth_step(np.clip(1.0 - away, 0.0, 1.0)))
@@ -82,10 +82,9 @@ def raise_layers(
 
     Parameters
     ----------
-    rises : the displacements.
-    space : (levels, k, rows, 3) nodes of k grid lines through the layers, at levels (indices along the span).
+    space : (levels, k, n, 3) x, y, z by level along the span, grid line off the blade, node on the line.
     heights : (levels, k) heights of the nodes on the blade, 0 at the hub and 1 at the casing.
-    ends : indices of levels that bound blade and gaps, of a level next to each, and cell heights between.
+    ends : levels that bound blade and gaps; the level next to each; the height of the cell between both.
     first : height of first cells at the blade.
     """
     rows = space.shape[2]

@@ -1,7 +1,4 @@
-"""A section of a blade row as a plane cascade with the pitch 2 pi / blades.
-
-On a surface of revolution (m', theta) with dm' = dm / r is conformal.
-"""
+"""A section of a blade row as a plane cascade with the pitch 2 pi / blades."""
 
 import math
 from dataclasses import dataclass, replace
@@ -79,7 +76,7 @@ class SectionPlane:
 
     @property
     def thickest(self) -> float:
-        """Coordinate u where the section is thickest, from 0 at the leading to 0.5 at the trailing edge."""
+        """Coordinate u, from 0 to 0.5 along the upper side of the blade, where the section is thickest."""
         u = np.linspace(0.1, 0.4, 61)
         return float(u[int(modulus(self._opposite(u) - self._opposite(1.0 - u)).argmax())])
 
@@ -106,8 +103,8 @@ class SectionPlane:
     def ending(self, near: tuple[float, float], thickest: float) -> Self:
         """Return the section with straight grid lines at inlet and outlet.
 
-        They begin at the distances `near` (in pitches) before and behind the blade with its layers. The blade
-        is thickest at the coordinate u = `thickest`; u is 0 at the leading and 0.5 at the trailing edge.
+        They begin at the distances `near` (in pitches) before and behind the outer edge of the blade's
+        layers. The blade is thickest at u = `thickest`; u is 0 at the leading and 0.5 at the trailing edge.
         """
         one, other = self._opposite(np.array([thickest, 1.0 - thickest]))
         centre = complex(0.5 * (one + other))
@@ -136,7 +133,10 @@ class SectionPlane:
         return np.interp(np.mod(arcs, self._walls[-1]), self._walls, np.append(self.places, 1.0))
 
     def front_arcs(self, u: Floats) -> Floats:
-        """Return arc lengths on the layers' outer edge where lines from `u` (0 to 1 on the blade) end."""
+        """Return where grid lines leave the blade's layers, as arc lengths (n,) on the layers' outer edge.
+
+        The lines begin on the blade, at places `u` (n,) from 0 to 1 around it.
+        """
         ring = self.cascade.ring
         length, start = self._walls[-1], ring.arcs[0]
         walls = np.append(ring.arcs, start + length)
@@ -146,10 +146,11 @@ class SectionPlane:
 
     @cached_property
     def across(self) -> tuple[Floats, Floats]:
-        """Places on the next blade opposite `ON_SIDE`, as 1 - u (n,), and blade length over distance (n,).
+        """Points opposite each other on neighbouring blades, and how near to each other they are.
 
-        u runs from 0 to 1 around a blade. The distance is that of the outer edges of both blades' layers. The
-        ratio is 0 where nothing is opposite.
+        u runs from 0 to 1 around a blade. For the points u = `ON_SIDE` (n,) on the upper side, the first
+        array (n,) has 1 - u of the opposite points. The second (n,) has the blade's perimeter, divided by the
+        distance between the outer edges of both blades' layers, or 0 where nothing is opposite.
         """
         front, pitch = self.cascade.ring.front, np.array([0.0, self.cascade.pitch[1]])
         one, other = (front.at(self.front_arcs(u)) for u in (ON_SIDE, 1.0 - ON_SIDE))
@@ -164,7 +165,7 @@ class SectionPlane:
         return lower, np.where(inside, self.cascade.blade.length / np.sqrt(here), 0.0)
 
     def place(self, point: Floats) -> str:
-        """Return, as text for users, at which height a point (m', theta) is, and how far along the blades."""
+        """Return text for users: this section's height, and how far along the blades (m', theta) is."""
         share = float(self.shares(point[None])[0])
         along = f"between the blades, {100.0 * share:.0f} % of the way along them"
         if share < _AT_EDGE:
@@ -185,7 +186,7 @@ class SectionPlane:
         return np.interp(shares, _SHARES, self._stations)
 
     def camber(self, shares: Floats) -> Floats:
-        """Return angles theta (n,) of the mean line at fractions `shares` (n,) of the way along the blade."""
+        """Return the coordinate theta (n,) of the mean line at `shares` (n,): 0 leading, 1 trailing edge."""
         u = np.linspace(0.0, 0.5, _AROUND)
         middle = 0.5 * (self._opposite(u) + self._opposite(1.0 - u))
         part = np.maximum.accumulate(self.shares(pairs_of(middle)))

@@ -1,8 +1,7 @@
 """Places of nodes around a blade, linear in the height from hub to casing.
 
-At an end with a gap both sides have opposite nodes; at other ends lines across the channel are normal to
-blades, or lean less where opposite places change from hub to casing, as does the ratio of length to width of
-a channel that turns outwards.
+At an end with a gap, nodes on both sides of a blade are opposite each other. At other ends, nodes move if
+grid lines across the channel lean too far from the normal of the blades.
 """
 
 import math
@@ -71,7 +70,7 @@ class SpanPlaces:
         return np.asarray(np.mod(start + height * wrapped(end - start), 1.0))
 
     def evened(self, planes: Sequence[SectionPlane], growth: float, pairs: Indices) -> "SpanPlaces":
-        """Return places whose steps around the blade have ratios up to `growth`; for parameters, see `of`."""
+        """Return places of nodes so that cells around a blade grow by at most `growth`; `pairs`: see `of`."""
         lines, corners = ChannelLines.of(planes), planes[0].corners
 
         def even(k: int) -> Floats:
@@ -83,7 +82,7 @@ class SpanPlaces:
 
 
 def at_corners(places: Floats, corners: Floats) -> Floats:
-    """Return `places` (k,) of nodes around a blade after the nearest node has moved to each corner (c,)."""
+    """Return `places` (k,), 0 to 1 around a blade, with those nearest to `corners` (c,) replaced by these."""
     out = places.copy()
     out[corner_nodes(places, corners)] = corners
     return out
@@ -156,8 +155,7 @@ def upright(
 ) -> tuple[Floats, Floats]:  # fmt: skip
     """Return places of a blade's nodes, at hub and casing, changed so that lines to the next blade lean less.
 
-    These are grid lines across the channel. They lean if they are not normal to the blade's wall layers.
-    Nodes stay on their side of the blade. They move only if lines near a free end lean by more than `LEAN`.
+    Lines lean if they are not normal to the blade's wall layers. Nodes stay on their side of the blade.
 
     Parameters
     ----------

@@ -81,7 +81,7 @@ def smooth_arcs(lengths: Floats, ends: tuple[Floats | float, Floats | float | No
 def smooth_cells(
     length: Floats | float, ends: tuple[Floats | float, Floats | float | None], growth: float, least: int
 ) -> int:
-    """Return the smallest cell count, at least `least`, to which `smooth_arcs` gives ratios up to `growth`.
+    """Return the least number of cells, `least` or more, that grow by at most `growth` in `smooth_arcs`.
 
     `length` and both cell lengths `ends` are numbers, or (n,) for n lines. The last one may be None (free).
     """
@@ -122,7 +122,7 @@ class Spacing:
 
     @classmethod
     def of(cls, lengths: tuple[float, float], ends: Ends, growth: float, cells: int) -> Self:
-        """Return the spacing of nodes for lines ``lengths[0]`` to ``lengths[1]`` long; see `two_sided`."""
+        """Return the spacing of nodes, by `two_sided`, on lines with lengths between the two `lengths`."""
         known = np.linspace(*lengths, _LENGTHS if lengths[1] > lengths[0] * (1.0 + 1e-9) else 1)
         return cls(lengths, (two_sided(known, ends, growth, cells) / known[:, None]).T)
 

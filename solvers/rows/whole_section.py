@@ -22,14 +22,13 @@ _RATIO = 2.0
 def whole_section(
     plane: SectionPlane, beyond: Layout, layers: int, largest: float, longest: Mapping[int, float]
 ) -> Layout:  # fmt: skip
-    """Return the layout of a section with layers, and with straight grid lines to inlet and outlet.
+    """Return the layout of a section with this many `layers`, and straight grid lines to inlet and outlet.
 
     Parameters
     ----------
     beyond : layout of the blocks beyond the layers, in m' (see `MeridionalMap`) and theta.
-    layers : number of layers.
-    largest : length of the longest cells.
-    longest : length of the longest such lines of all sections, for cell counts; keys `INLET` and `OUTLET`.
+    largest : length of the longest cells along the straight lines.
+    longest : by key, `INLET` or `OUTLET`: length of the longest straight grid lines there in any section.
     """
     cascade = plane.cascade
     mesh = beyond.mesh

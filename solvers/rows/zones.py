@@ -29,7 +29,7 @@ class Zone:
 
 
 def section_cells(zones: Sequence[Zone], cells: int, growth: float) -> int:
-    """Return the cell count at one height of a row of about `cells` cells; higher if `growth` requires it."""
+    """Return how many of a grid's `cells` each section gets; more if the growth ratio `growth` needs them."""
     return max(_needed(growth), int(cells / _sections(zones)))
 
 

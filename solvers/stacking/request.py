@@ -55,7 +55,7 @@ class StackRequest(VolumeRequest):
     Raises
     ------
     InputError
-        If a value is out of its range, or if parameters need or exclude each other.
+        If a value is out of its range, or if parameters exclude each other or lack another that they need.
     """
 
     what: ClassVar[str] = "a stack"

@@ -83,9 +83,9 @@ def around(
 
 
 def unit_nodes(section: Section, plan: Around) -> tuple[Floats, str]:
-    """Return nodes (n, 2) around a section of unit chord, upper side first, and a note on changes.
+    """Return nodes (n, 2) around a section of unit chord, upper side first, and a note.
 
-    Raises InputError if the outline through the nodes intersects itself.
+    The note says if the trailing edge was thickened. Raises InputError if the outline intersects itself.
     """
     shape, note = section.shape, ""
     name = shape.name or "a section"

@@ -22,7 +22,6 @@ def span_heights(
 
     Cells decrease towards the tip to the length `last`; if it is None, they are nearly equal. `panels` has
     the number of cells between each section and the next; panels with None share the remaining cells.
-
     Raises InputError if there are more sections than nodes, or if numbers of cells do not fit.
     """
     cells, span = nodes - 1, float(sections[-1] - sections[0])
@@ -83,7 +82,10 @@ def _cells(own: Indices, panels: Sequence[int | None], free: Sequence[int]) -> l
 
 
 def by_panel(sections: Floats, cells: Sequence[int], last: float | None) -> Floats:
-    """Return heights of nodes: `cells` (n - 1,) between `sections` (n,); the last cell is at most `last`."""
+    """Return heights of nodes: one at each of `sections` (n,), and `cells` (n - 1,) cells between these.
+
+    The last cell is at most `last` high (None: no limit) if the last of `cells` is 3 or more.
+    """
     lengths = np.diff(sections)
     means = lengths / np.array(cells)
     ends = np.concatenate([means[:1], np.sqrt(means[1:] * means[:-1]), means[-1:]])

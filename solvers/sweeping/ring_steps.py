@@ -39,7 +39,7 @@ def _steps(sizes: Floats, rows: int, first: float | None, rate: Floats) -> Float
 
 
 def fewest_rows(lengths: Floats, sizes: Floats, first: float | None, growth: float) -> int:
-    """Return about how many rows `ring_steps` needs for ratios of steps up to `growth`, rather too few."""
+    """Return a low estimate of how many rows `ring_steps` needs so that cells grow by at most `growth`."""
     if first is None:
         return max(1, round(float((lengths / sizes).mean())) - TRIED // 2)
     even = math.ceil(float((lengths / np.maximum(sizes, first)).max()) - _CLOSE)

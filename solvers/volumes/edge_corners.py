@@ -18,7 +18,7 @@ Ranges = list[tuple[int, int]]  # first and end index of nodes along each direct
 
 
 def check_corners(faces: SixFaces) -> None:
-    """Raise InputError, which names a place, if cells are folded wherever the inner nodes are.
+    """Raise InputError, which names a place, if the faces fold a cell for all positions of inner nodes.
 
     At an edge of the volume, the two faces alone determine the Jacobians of cells, which must be positive.
     Elsewhere, the faces must leave a valid position for each inner node next to them (see `closed_place`).
@@ -113,7 +113,7 @@ def closed_place(faces: SixFaces) -> Place | None:
 
 
 def next_to_faces(counts: tuple[int, int, int]) -> Iterator[tuple[tuple[Side, ...], Ranges]]:
-    """Yield each corner, edge and face of a volume as a set of sides, with the inner nodes next to it."""
+    """Yield each set of one, two or three faces that meet, and index ranges of inner nodes next to all."""
     for size in (3, 2, 1) if min(counts) > 2 else ():
         for sides in combinations(FACES, size):
             if len({PLACES[side][0] for side in sides}) == size:

@@ -65,10 +65,10 @@ class Spline:
 def interpolate(
     faces: SixFaces, laws: Laws, spline: Spline | None = None, out: Floats | None = None
 ) -> Floats:
-    """Return nodes (ni, nj, nk, 3) by transfinite interpolation between `faces`, plus values of a `spline`.
+    """Return nodes (ni, nj, nk, 3) by transfinite interpolation between `faces`.
 
-    `laws` are the parameters of nodes along edges (see `uniform_laws`). The result is stored in `out` (3, ni,
-    nj, nk), if given. Gordon and Hall, Int. J. Numer. Methods Eng. 7 (1973) 461-477.
+    `laws` are the parameters of nodes along edges (see `uniform_laws`). Displacements by `spline` are added.
+    `out` (3, ni, nj, nk) takes the result. Gordon and Hall, Int. J. Numer. Methods Eng. 7 (1973) 461-477.
     """
     planes = np.empty((3, *faces.counts)) if out is None else out
     sides = tuple(np.moveaxis(face, -1, 0) for face in faces.faces)

@@ -26,11 +26,11 @@ SWEEPS, FIRST = 12, 30  # on the coarsest level: in a cycle, and to start with
 class Transfer:
     """Interpolations along one direction between a multigrid level and the next coarser one.
 
-    Each is a pair: for each resulting node, the index of the first contributing node, and weights from it on.
+    Each is a pair: for each new node, the index of an old node, and weights of this node and those after it.
     """
 
     up: tuple[NDArray[np.intp], Floats]  # (n, 2) linear interpolation to the fine nodes
-    down: tuple[NDArray[np.intp], Floats]  # (m, terms) its transpose divided by the ratio of the steps
+    down: tuple[NDArray[np.intp], Floats]  # (m, terms) transpose of `up`, divided by the ratio of the steps
     at: tuple[NDArray[np.intp], Floats]  # (m, 4) cubic interpolation at the coarse nodes
 
 

@@ -19,7 +19,7 @@ def refine_volume(coarse: Floats, coarse_faces: SixFaces, faces: SixFaces, laws:
     """Return nodes (3, ni, nj, nk) inside `faces`, by splines through a coarse grid.
 
     `coarse` (3, mi, mj, mk) are the nodes of the coarse grid inside `coarse_faces`. `laws` are the parameters
-    of the fine nodes (see `uniform_laws`); all four edges of a direction must have equal parameters.
+    of the fine nodes along edges, 0 to 1 (see `uniform_laws`), equal on all four edges of a direction.
     """
     start = interpolate(coarse_faces, uniform_laws(coarse_faces.counts))
     spline = spline_of(coarse - np.moveaxis(start, -1, 0), tuple(law[0] for law in laws))

@@ -44,11 +44,10 @@ def variational(
     Parameters
     ----------
     max_cycles : largest number of iterations on the coarse grid.
-    coarse : largest number of its nodes per direction; "auto": 33; None: as many as on the faces.
+    coarse : largest number of nodes of the coarse grid per direction; "auto": 33; None: as on the faces.
     energy : ``angles``, for right angles and gradual changes of length, or ``shape``, for cells like cubes.
 
-    Raises InputError if a setting is not positive, if an edge has no length, or if the faces are such that a
-    cell is folded wherever the inner nodes are.
+    Raises InputError if a setting is not positive, an edge has no length, or the faces alone fold a cell.
     """
     begun = time.perf_counter()
     _check(max_cycles, coarse, energy)
