@@ -30,7 +30,7 @@ def symmetry_of(surface: Surface, axis: str | None, far: float) -> Symmetry:
 
     `axis` is the normal of the planes, ``none`` for no plane, or None to detect planes. Grid lines cross a
     plane if much of the surface faces it from a distance below `far`. If `axis` is None, such planes are left
-    out. Raises InputError if such a plane is normal to a given `axis`, or no plane with open edges is.
+    out. Raises InputError if one is normal to a given `axis`, or if no plane normal to it has open edges.
     """
     planes, inside = symmetry_planes(surface, axis)
     kept, notes = [], []
