@@ -81,7 +81,7 @@ class Format:
     def with_options(self, text: str) -> Format:
         """Return the format with comma-separated options; those after a colon override those before it.
 
-        Raises InputError: an unknown option; options that exclude each other without a colon between them.
+        Raises InputError: an unknown option; options that exclude each other and have no colon between them.
         """
         if not text.strip(":"):
             return self

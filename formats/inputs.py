@@ -38,7 +38,7 @@ class Inputs:
 
     Parameters
     ----------
-    words : files, folders, zip archives, lists (``@FILE``), designations and ``-`` for standard input.
+    words : files, folders, zip archives, lists (``@FILE``), shapes (``naca:2412``); ``-``: standard input.
     suffixes : extensions of files taken from folders and archives; empty: all that can be read.
     pick : patterns (``naca*``) for file names in folders, archives and lists; upper and lower case are equal
         and the extension may be left out. A pattern with a ``/`` is compared with the whole path.
@@ -116,7 +116,7 @@ class Inputs:
             yield number, tuple(entries)
 
     def more_than(self, count: int) -> bool:
-        """Return whether there are more than `count` inputs, without a search for further inputs."""
+        """Return whether there are more than `count` inputs."""
         return (self._begun if count < _BEGINNING else sum(1 for _ in islice(self, count + 1))) > count
 
     @cached_property

@@ -15,7 +15,7 @@ MOST_POINTS = 100_000  # largest number of points; a longer path is taken for a 
 
 
 def path_of(text: str) -> Path:
-    """Return the curve in a file, which is TOML or a list of points, or in standard input for ``-``.
+    """Return the curve in the file `text`, which is a list of points or TOML; ``-`` is standard input.
 
     Points give a smooth curve, closed if the last is the first. Raises InputError, with the place, if the
     file is unreadable, a line does not have three numbers, a key is unknown, or a value is invalid.

@@ -54,7 +54,7 @@ def _nodes(row: Table) -> int | None:
 
 
 def cant(data: Table, default: Cant) -> Cant:
-    """Return the cant in `data`: degrees about x, or ``panel`` (the dihedral). Others raise InputError."""
+    """Return the angle in degrees by which a section is turned about x; ``panel`` means: by the dihedral."""
     if "cant" not in data.data or data.data["cant"] == "panel":
         return "panel" if "cant" in data.data else default
     degrees = data.number("cant")

@@ -202,7 +202,7 @@ def _blocks(sizes: Floats) -> NDArray[np.intp]:
 
 
 def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
-    """Return edge lengths along i and areas, both (n,), of a sample of n visible cells; the same for j."""
+    """Return (edge lengths along i, areas), (edge lengths along j, areas), all (n,), of n visible cells."""
     i, j = np.nonzero(part.mask)
     stride = max(1, len(i) // _SAMPLE)
     i, j = i[::stride] + part.i0, j[::stride] + part.j0

@@ -148,7 +148,10 @@ def _parts(mappings: Any, index: Path, split: str) -> Iterator[Part]:
 
 
 def write_index(file: Path, index: Path, parts: Sequence[PartFacts]) -> None:
-    """Write an index to `file`; the caller moves it to `index`. Raises InputError: `parts` do not match."""
+    """Write to `file` the index of all `parts`; the caller then moves this file to the path `index`.
+
+    Raises InputError: parts that were made with different options, or differ in node counts or topology.
+    """
     filled = [facts for facts in parts if facts.count]
     first = filled[0]
     for facts in filled[1:]:

@@ -62,7 +62,7 @@ def read_shapes(source: Source) -> Iterator[DomainShape]:
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
-    """Yield the blocks of a block layout as a coarse grid."""
+    """Yield a single coarse grid, which consists of the blocks of the block layout in a file."""
     yield to_grid(read_layout(source), source.stem)
 
 

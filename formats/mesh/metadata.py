@@ -15,9 +15,10 @@ Facts: TypeAlias = Mapping[str, Sequence[str]]  # texts by key
 def facts_of(grid: Grid, block: int = 0, number: int = 0) -> dict[str, list[str]]:
     """Return topology, name, patches and provenance of a block as lists of texts by key, for `grid_with`.
 
-    `block` is the index of the block in `grid`, `number` the index of the grid in the file. Only block 0 has
-    connections and provenance. The text of a patch is ``side start stop name``; if needed, other keys have
-    its kind and its range along a second direction. An extruded grid has the texts of its planar grid.
+    `block` is the index of the block in `grid`, `number` that of the grid in the file. Only block 0 has
+    connections and provenance. The key ``parts`` has a text ``side start stop name`` for each patch. The keys
+    ``kinds``, for the kinds of patches, and ``across``, for their ranges along a second direction, may be
+    missing. An extruded grid has the texts of its planar grid.
     """
     space = grid.form != "plane"
     if space:
@@ -62,5 +63,5 @@ def plain(value: object) -> object:
 
 
 def connections_text(connections: Iterable[Connection]) -> str:
-    """Return connections as JSON: a list of fields for each, among them its motion as an object or null."""
+    """Return connections as JSON: a list of the fields of each; the last field, `transform`, may be null."""
     return json.dumps([[*astuple(c)[:-1], asdict(c.transform) if c.transform else None] for c in connections])

@@ -34,9 +34,9 @@ def surfaces_wanted() -> Iterator[None]:
 
 @dataclass(frozen=True)
 class IndexedNodes:
-    """Nodes (ni, nj, 2 or 3) or (ni, nj, nk, 3) of a block, and how its indices relate to the file's.
+    """Nodes (ni, nj, 2 or 3) or (ni, nj, nk, 3) of a block, and how its directions relate to the file's.
 
-    ``axes[k]`` tells which file index (0, 1 or 2) runs along direction k; if `reversed`, i runs against it.
+    Their direction k is direction ``axes[k]`` (0 to 2) of the file; if `reversed`, i has the opposite order.
     """
 
     nodes: Floats
@@ -57,9 +57,9 @@ class _Slice(NamedTuple):
 def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> list[IndexedNodes]:
     """Return the nodes of each block of a file, given as coordinates x, y[, z] of shape (n1, n2, n3) each.
 
-    Blocks are planar if each is one layer of nodes with constant x, y or z, or two such layers that differ
-    only in this coordinate, with the same values in all blocks. This coordinate is then left out. Otherwise,
-    or inside ``with surfaces_wanted()``, blocks of one layer are surface patches, others are volumes.
+    Blocks are planar if each is one layer of nodes, all in the same plane of constant x, y or z; or if each
+    is two equal layers, all in the same two such planes. This coordinate is then left out. Otherwise, or
+    inside ``with surfaces_wanted()``, blocks of one layer are surface patches, others are volumes.
     Left-handed planar blocks and volumes are reversed along i. `places` are names of blocks in messages.
     Raises InputError if a block has no cells.
     """
@@ -78,7 +78,7 @@ def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> 
 
 
 def planar(coordinates: Sequence[Floats]) -> Floats:
-    """Return nodes (ni, nj, 2) from x, y[, z] of a plane or its shifted copies; others raise InputError."""
+    """Return nodes (ni, nj, 2) from x, y[, z] of one plane or several equal ones; else raise InputError."""
     with np.errstate(all="ignore"):
         cut = _slice_of(coordinates, most=max(coordinates[0].shape))
         if cut:

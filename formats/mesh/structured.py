@@ -77,12 +77,11 @@ def grid_of_block(coordinates: Sequence[Floats], facts: Facts, name: str) -> Gri
 def grids_of_file(
     blocks: Sequence[FileBlock], faces: Sequence[Face], pairs: Sequence[Pair], name: str
 ) -> Iterator[Grid]:
-    """Yield the grids of a file; `lattices` decides whether its blocks are planar.
+    """Yield the grids of a file, given its blocks, its named faces and its pairs of connected faces.
 
-    Blocks that touch form one grid, and so do all blocks that are surface patches. A single grid has the name
-    `name`. If there are several, a grid that is a single named block has the name of the block, others have
-    `name` with a number. Unnamed outer edges of planar blocks get names. Raises InputError: a block without
-    cells; unusable nodes; interfaces that do not coincide.
+    Blocks that touch form one grid, and so do all surface patches. A single grid is called `name`. Of several
+    grids, one that is a single named block has the block's name, others have `name` with a number. Unnamed
+    outer edges of planar blocks get names. Raises InputError: no cells; unusable nodes; mismatched interfaces.
     """
     if blocks:
         read = lattices([block.coordinates for block in blocks], [block.place for block in blocks])

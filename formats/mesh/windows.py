@@ -57,9 +57,9 @@ class SidePart(NamedTuple):
 
 
 def part_of(window: FaceWindow, lattices: Sequence[IndexedNodes]) -> SidePart | None:
-    """Return the range of a side that a window (node rectangle) covers. Raises InputError: outside blocks.
+    """Return the part of a block's side that `window`, a rectangle of nodes, covers.
 
-    Returns None if the window is not on a single side, such as an edge of a volume.
+    Returns None for a plane inside a block or a mere edge of it. Raises InputError: nodes outside the blocks.
     """
     if not 0 <= window.block < len(lattices):
         problem = f"a face of block {window.block + 1} is named and there are {len(lattices)}"
@@ -87,7 +87,7 @@ def part_of(window: FaceWindow, lattices: Sequence[IndexedNodes]) -> SidePart | 
 
 
 def patch_of(face: Face, lattices: Sequence[IndexedNodes]) -> Patch | None:
-    """Return the patch on a rectangle of nodes; None if they are not all on exactly one side of a block."""
+    """Return a face as a patch; None if it is a plane inside a block, or a mere edge of a volume."""
     part = part_of(face.window, lattices)
     if part is None:
         return None

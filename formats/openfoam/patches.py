@@ -24,7 +24,7 @@ _FLAT = 1e-15  # largest squared difference of unit normals in a symmetry plane 
 
 
 class CasePatch(NamedTuple):
-    """A patch: name, type, number of faces, and `more` entries of its dictionary."""
+    """A patch with `size` faces and the type `kind`; `more` are further entries of its dictionary."""
 
     name: str
     kind: str

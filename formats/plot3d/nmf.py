@@ -35,7 +35,7 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 
 
 def write_map(path: Path, grids: Sequence[Grid], span: int = 2) -> None:
-    """Write the neutral map of all blocks. Direction k of a grid has number `span`, 0 to 2, in the file."""
+    """Write the neutral map of all blocks. With `span` 0, 1 or 2, direction k is I, J or K of the file."""
     dims: list[list[int]] = []
     rows: list[str] = []
     for grid in grids:

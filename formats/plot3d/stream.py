@@ -49,7 +49,7 @@ def unframed(data: memoryview, order: str) -> Stream | None:
 
 
 def broken_record(data: memoryview, order: str) -> str:
-    """Return a message on the first incomplete Fortran record; empty if none is, or there are no records."""
+    """Return a message on the first incomplete Fortran record, else an empty text; `order`: byte order."""
     for count, (at, length, _, whole) in enumerate(_records(data, order), start=1):
         if count == 1 and (length % 4 or not 0 < length <= _LONGEST_HEADER or not whole):
             return ""

@@ -25,7 +25,7 @@ MOST_POINTS = 100_000  # largest number of points of a curve; more are taken for
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:
-    """Yield the shapes in a file of points. Raises InputError, with the line, if there is no shape."""
+    """Yield the shapes in a file of points. Raises InputError if there is none."""
     yield from parse(decode(source.text_bytes()), source.name, source.stem)
 
 

@@ -138,7 +138,10 @@ class Body:
         return np.asarray(s)
 
     def arcs_near(self, points: Floats) -> Floats:
-        """Return for `points` (n, 2), nose to tail, the arc lengths (n,) of the meridian's nearest points."""
+        """Return, as arc lengths (n,), the places on the meridian nearest to `points` (n, 2).
+
+        A point is given as x and radius. The points are in order from nose to tail.
+        """
         s = arc_lengths(points)
         s *= self.length / s[-1]
         for _ in range(_STEPS):  # Newton's method for the foot of each point

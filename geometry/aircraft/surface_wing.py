@@ -75,7 +75,7 @@ class SurfaceWing:
 
     @property
     def z(self) -> Floats:
-        """Equally spaced z (n,), from where the last line along the span begins at the root, to the tip."""
+        """Equally spaced z (n,) from root to tip. All lines along the span begin at or below the first z."""
         begin = max(float(strip[0, :, 2].max()) for strip in self.strips)
         return np.linspace(begin, self.height, _LEVELS)
 
@@ -97,14 +97,14 @@ class SurfaceWing:
 
     @cached_property
     def arcs(self) -> Floats:
-        """Lengths (n,), in chords, of the n strips of nodes that surround the section, at half span."""
+        """Arc lengths (n,) in chords across the n spanwise strips of the surface, halfway to the tip."""
         z = self.z[[_LEVELS // 2]]
         lengths = [float(norms(np.diff(at_heights(strip, z)[0], axis=0)).sum()) for strip in self.strips]
         return np.array(lengths) / self.sizes(z)[0]
 
     @cached_property
     def nose(self) -> float:
-        """Number of strips before the nose, from the upper trailing edge, with a fraction (see `line`)."""
+        """Place of the nose around the section, a number for `line`; 0 is the upper trailing edge."""
         z = self.z[[_LEVELS // 2]]
         rows = [at_heights(strip, z)[0] for strip in self.strips]
         edge = 0.5 * (rows[0][0] + rows[-1][-1])
@@ -120,7 +120,7 @@ class SurfaceWing:
     def line(self, place: float) -> Floats:
         """Return the line (stations, 3) along the span at a `place` around the section.
 
-        Place 1.25 is in the second strip, number 1, at a quarter of its arc length around the section.
+        The surface has strips from root to tip. Place 1.25 is a quarter of the way across the second strip.
         """
         return self.lines(np.array([place]))[0]
 
@@ -134,11 +134,11 @@ class SurfaceWing:
         return out
 
     def arc(self, place: float) -> float:
-        """Return the arc length, in chords at half span, of the first `place` strips around the section."""
+        """Return the arc length, in chords, from the upper trailing edge to `place` (see `line`)."""
         return float(np.interp(place, np.arange(len(self.strips) + 1), self._bounds))
 
     def places(self, arcs: Floats) -> Floats:
-        """Return how many strips (n,), with a fraction, make up lengths `arcs` (n,); the inverse of `arc`."""
+        """Return places (n,), as in `line`, at arc lengths `arcs` (n,) in chords; the inverse of `arc`."""
         return np.interp(arcs, self._bounds, np.arange(len(self.strips) + 1))
 
     @property

@@ -54,7 +54,7 @@ class Connection:
     def pairs(self, values: Sequence[NDArray[Any]]) -> tuple[NDArray[Any], NDArray[Any]]:
         """Return the values at the nodes of the side, and those at the donor's nodes in the same order.
 
-        `values` has an array (ni, nj[, nk]) per block. Results are views, (n, 1) for n nodes, or (n, m, 1).
+        `values` has an array (ni, nj[, nk]) per block. Results are views: (n, 1) or, of volumes, (n, m, 1).
         """
 
         def face(block: int, side: Side) -> NDArray[Any]:

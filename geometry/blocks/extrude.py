@@ -60,7 +60,7 @@ def thickened(
 
     `nodes` has an array (ni, nj, nk, 3) of finite nodes for each block. Patches and connections extend over
     all planes of nodes. `ends` has the name and kind of the patch on the first plane, then on the last. If
-    `ends` is None, the planes are connected: `motion` moves the first to the last; if None, they coincide.
+    `ends` is None, the first plane is connected to the last: `motion` moves it there; else both coincide.
 
     Raises InputError: blocks that are not planar; nodes that differ where blocks are connected.
     """

@@ -55,8 +55,8 @@ class Motion:
     def alike(self, other: Motion, tolerance: float) -> bool:
         """Return whether two motions are equal to a relative `tolerance`.
 
-        L is the largest component of the two shifts, and at least 1 if there is a rotation. The two images
-        of the origin, and of points at distance L on the coordinate axes, may differ by `tolerance` times L.
+        Both must move the origin, and points at distance L on the axes, to the same places within `tolerance`
+        times L. L is the largest component of the two shifts, and at least 1 if there is a rotation.
         """
         size = max(1e-300, *map(abs, (*self.shift, *other.shift, float(bool(self.turn or other.turn)))))
         dimension = max(2, *(len(rows) for rows in (self.shift, self.turn, other.shift, other.turn)))

@@ -103,10 +103,7 @@ def resample_patches(
 
 
 def patches_in_place(old: Boundary, new: Boundary) -> tuple[Patch, ...]:
-    """Return the patches of the boundary `old` for the boundary `new`, with other nodes on the same sides.
-
-    Each end of a patch moves to the node that is nearest in terms of relative arc length.
-    """
+    """Return the patches of `old` for `new`; each end moves to the node nearest in relative arc length."""
 
     def moved(patch: Patch) -> Patch:
         before, after = (arc_parts(getattr(edges, patch.side)) for edges in (old, new))

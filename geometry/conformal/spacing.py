@@ -33,7 +33,7 @@ DENSE = 640  # points that represent the whole wall
 def conformal_knots(
     curve: Curve, marks: Floats, count: int, at: NDArray[np.intp] | None = None, steps: tuple[int, ...] = (1,)
 ) -> Floats:
-    """Return arc lengths (count,) on a closed curve at equal steps of the angle of its conformal map.
+    """Return arc lengths (count,) on a closed curve at equal angles of its conformal map to a circle.
 
     The curve is clockwise from its first node, which is repeated.
 
@@ -41,7 +41,7 @@ def conformal_knots(
     ----------
     marks : (m,) ascending arc lengths in (0, length) at which there must be nodes.
     at : (m,) indices of the nodes at `marks`; if None, they are multiples of one of the `steps`.
-    steps : descending; the first is used that does not exceed the number of cells from node 0 to any mark.
+    steps : numbers of cells, descending; the largest that fits between node 0 and the nearest mark is used.
 
     Raises InputError: the conformal angle does not increase along the curve; no convergence.
     """

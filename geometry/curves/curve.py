@@ -25,10 +25,10 @@ class Curve:
     """A smooth curve exactly through given points, with a cubic in each interval (`geometry.curves.spline`).
 
     An open curve has at least 2 `points` (n, 2), a closed curve at least 3. A closed curve may repeat its
-    first point at the end. The tangent may jump at `corners` (indices of points); None detects corners.
-    Intervals in the mask `straight` (intervals,) are straight lines, and so are long intervals between
-    rounded corners (`geometry.polygon.straights`). Raises InputError: too few points; a point that is not
-    finite or equals its neighbour; a corner out of range.
+    first point at the end. The tangent may jump at corners: the argument `corners` has the indices of points,
+    or None to detect them; the attribute `corners` has their arc lengths. Intervals in the mask `straight`
+    (intervals,) are straight lines, and so are long intervals between rounded corners. Raises InputError: too
+    few points; a point that is not finite or equals its neighbour; a corner out of range.
 
     >>> square = Curve(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), closed=True)
     >>> square.length, square.corners.tolist()
@@ -107,7 +107,7 @@ class Curve:
 
     @property
     def tables(self) -> tuple[Floats, Floats, Floats, Floats, int]:
-        """Tables for C code: the cubics, and the arc lengths and derivatives at the ends of their parts."""
+        """Tables for C code: coefficients of the cubics, and their parameter as a function of arc length."""
         return self._cubic, self._table, self._rate_start, self._rate_stop, _STEPS
 
     def _locate(self, s: Floats) -> tuple[Indices, Floats]:

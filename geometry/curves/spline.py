@@ -23,7 +23,7 @@ def spline_slopes(
     """Return the slopes (intervals, 2) of a curve at the start and at the end of each interval.
 
     Between `corners` (indices of points) the curve is a cubic spline, which is limited to avoid overshoots
-    (see `limited`). Its cubics beside a corner are parabolas. Intervals in the mask `tangent` (n,) are
+    (see `limited`). In intervals beside a corner it is quadratic. Intervals in the mask `tangent` (n,) are
     straight lines, to which neighbouring splines are tangent. A closed curve does not repeat its first point.
     """
     if tangent is not None and tangent.any():
@@ -107,7 +107,7 @@ def open_slopes(
     A spline joins each of the `stops` (indices of points, with the first and the last) to the next. `chord`
     (intervals, d) are the vectors between points, `h` (intervals,) their lengths. `held` (2, intervals, d)
     fixes slopes: ``held[0, k]`` at the start of the spline that begins with interval k, ``held[1, k]`` at the
-    end of one that ends with it. If a slope is not finite or not given, the interval is a parabola.
+    end of one that ends with it. Without a finite slope at an end, the interval there is a parabola.
     """
     delta = chord / h[:, None]
     doubled = np.zeros(len(h) + 1, dtype=np.intp)

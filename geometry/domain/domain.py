@@ -117,7 +117,7 @@ class Domain:
     def layered_loops(self) -> range:
         """Indices of the loops that get layers if no wall is named: holes or, in a channel, the outer loop.
 
-        A channel has no holes or periodic sides, and a part named as no wall, as inlet. Others are walls.
+        A channel has no holes or periodic sides, and a part of its boundary, such as ``inlet``, is no wall.
         """
         alone = len(self.loops) == 1 and not self.periodic
         channel = alone and not all(map(may_be_wall, self.loops[0].names))

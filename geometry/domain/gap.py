@@ -23,9 +23,9 @@ _SAMPLES = 2000  # points on all walls together
 def wall_gaps(domain: Domain, loop: Loop, arcs: Floats) -> Floats:
     """Return distances (n,) from points of a loop, at arc lengths `arcs` (n,), to the nearest wall in front.
 
-    A wall of any loop is in front if the direction from the point to it deviates from the inward normal by
-    at most 53 degrees. Without a wall in front, the distance is infinite. Two walls of the loop that form a
-    corner are not in front of each other, if two cells of the grid are to meet there.
+    A wall of any loop is in front if the direction from the point to it deviates from the inward normal by at
+    most 53 degrees. Without a wall in front, the distance is infinite. At an obtuse corner where two cells of
+    the grid are to meet, grid lines follow both walls, and neither wall is in front of the other.
     """
     walls, points, along = wall_points(domain.loops), loop.at(arcs), loop.tangent(arcs)
     gaps = gaps_in_front(walls, points, along)

@@ -22,7 +22,7 @@ def place_at(loop: Loop, arc: Floats) -> Floats:
 
 
 def arc_at(loop: Loop, place: Floats) -> Floats:
-    """Return arc lengths (n,) on a loop; `place` (n,) counts its corners, with fractions (see `place_at`)."""
+    """Return arc lengths (n,) on a loop at `place` (n,); 2.25 is a quarter of the way from corner 2 to 3."""
     if not loop.corners:
         return np.asarray(np.mod(place, 1.0) * loop.length)
     begins, lengths = loop.pieces

@@ -58,7 +58,7 @@ def family(name: str) -> Family:
 def polyline(corners: Corners, n: int, like: Corners | None = None) -> Floats:
     """Return `n` nodes (n, 2) along a polyline, in nearly equal steps; every corner is bitwise a node.
 
-    With `like`, another polyline, the corners get the node indices of the corners of `like`.
+    With `like`, a polyline of as many corners, node indices at corners are those that `like` would have.
 
     >>> polyline([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)], 5).tolist()
     [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.0, 0.5], [1.0, 1.0]]
@@ -73,7 +73,7 @@ def polyline(corners: Corners, n: int, like: Corners | None = None) -> Floats:
 
 
 def arch(height: float, ni: int, nj: int) -> Boundary:
-    """Return case 1 of the paper: a unit square whose top is y = 1 + `height` sin(pi x)."""
+    """Return a unit square whose top is y = 1 + `height` sin(pi x)."""
     x = np.linspace(0.0, 1.0, ni)
     top = np.stack([x, 1.0 + height * sin(np.pi * x)], axis=1)
     top[-1] = 1.0, 1.0
@@ -81,7 +81,7 @@ def arch(height: float, ni: int, nj: int) -> Boundary:
 
 
 def hexagon(angle: float, ni: int, nj: int) -> Boundary:
-    """Return case 2 of the paper: a unit square whose top and bottom have a kink.
+    """Return a unit square whose top and bottom have a kink.
 
     The kinks, of interior angle `angle` (degrees), are at (1/2, 1 + h) and (1/2, -h), h = 1/(2 tan(angle/2)).
     """
@@ -92,7 +92,7 @@ def hexagon(angle: float, ni: int, nj: int) -> Boundary:
 
 
 def wrench(opening: float, ni: int, nj: int) -> Boundary:
-    """Return case 3 of the paper: a unit square with a notch in its top, like the jaw of a wrench.
+    """Return a unit square with a notch in its top, like the jaw of a wrench.
 
     The notch, `opening` wide, is centred at x = 1/2 and reaches from y = 1 down to 0.6. The top has a tip at
     y = 1.15 on each side of the notch, 0.05 away from it. Elliptic grids fold at the lower corners of the
@@ -110,7 +110,7 @@ def _jaw(opening: float) -> Corners:
 
 
 def semicircle(centre: float, ni: int, nj: int) -> Boundary:
-    """Return case 4 of the paper: a 2 by 1 channel, with a semicircle on its floor at x = `centre`."""
+    """Return a 2 by 1 channel, with a semicircle of radius 0.2 on its floor at x = `centre`."""
     radius, length = 0.2, 2.0
     first, arc = centre - radius, np.pi * radius
     whole = length - 2 * radius + arc
@@ -125,7 +125,7 @@ def semicircle(centre: float, ni: int, nj: int) -> Boundary:
 
 
 def airfoil(ratio: float, ni: int, nj: int) -> Boundary:
-    """Return case 5 of the paper: a closed NACA 00xx airfoil, `ratio` thick, in a circle of radius 15."""
+    """Return a closed NACA 00xx airfoil of chord 1 and thickness `ratio` in a circle of radius 15."""
     # imported here since the other families do not need them
     from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
     from meshonet.geometry.shapes.airfoil.naca import POINTS, thickness
@@ -139,7 +139,7 @@ def airfoil(ratio: float, ni: int, nj: int) -> Boundary:
 
 
 def hole(height: float, ni: int, nj: int) -> Boundary:
-    """Return case 6 of the paper: a square of side 2 at (0, 0) with a hole of radius 0.35 at (0, `height`).
+    """Return a square of side 2 at (0, 0) with a hole of radius 0.35 at (0, `height`).
 
     Nodes run clockwise from the rightmost point of the hole.
     """

@@ -48,11 +48,11 @@ class Lattice:
 
 @dataclass(frozen=True)
 class SceneSheet:
-    """A layer of cells to draw, with nodes from lattice number `lattice`: those of a block or of one layer.
+    """A layer of cells to draw: a planar or surface block, a patch of a volume, or a layer inside a volume.
 
-    The sheet has the index `node` along the direction `axis` of the lattice; if `axis` is None, it is the
-    whole lattice. `ranges` are its first and last nodes along the other directions. A sheet inside a large
-    volume has the index `at` along direction `across` (i, j or k) of its block.
+    Its nodes are in array number `lattice` of the page. If `axis` is None, the layer is the whole array; else
+    it has index `node` along direction `axis` of the array. `ranges` are its first and last nodes along its
+    two directions. A layer inside a volume has index `at` along direction `across` (i, j, k) of its block.
     """
 
     lattice: int

@@ -46,7 +46,7 @@ def article(label: str, report: QualityReport, gates: Sequence[Gate], number: in
 
 
 def size_words(report: QualityReport) -> str:
-    """Return the size of a grid as text: nodes of a single block or number of blocks, cells, folded cells."""
+    """Return the size of a grid: ``65 x 33 nodes, 2,048 cells, none folded``, or ``2 blocks, ...``."""
     grid, quality = report.grid, report.quality
     folded = f"{quality.folded:,} folded" if quality.folded else "none folded"
     if len(grid.blocks) == 1:
@@ -56,7 +56,7 @@ def size_words(report: QualityReport) -> str:
 
 
 def passed(report: QualityReport, gates: Sequence[Gate]) -> bool:
-    """Return whether no gate and no check of a profile has failed, and no cell is folded."""
+    """Return whether no cell is folded and the grid meets `gates` and the limits of its quality profile."""
     return not report.broken(gates) and not report.quality.folded
 
 
