@@ -32,7 +32,6 @@ _ON_ROWS = 0.65  # weight of the elliptic grid's rows in the cell sizes in the m
 _FINE = 33  # number of nodes on the lines of the elliptic grid
 _MIRROR = np.array([1.0, -1.0])  # reflection to the plane of a `Boundary`, which runs clockwise
 
-
 Within: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 """Smallest and largest s, smallest and largest theta."""
 

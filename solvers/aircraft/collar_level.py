@@ -45,7 +45,7 @@ class Hole:
 
     @cached_property
     def box(self) -> Rectangle:
-        """Rectangle around the section, with sides along and around the body, in the unit of x, y, z."""
+        """Rectangle around a wing's section: limits along the body and around it, in the unit of x, y, z."""
         return rectangle(self.section, self.within, self.scale)
 
     @property
@@ -55,7 +55,7 @@ class Hole:
 
     @property
     def bands(self) -> tuple[float, float]:
-        """Widths, measured around the body, of the spaces below and above the grid at the wing's section."""
+        """Circumferential lengths left for cells below and above the rectangle around the wing's section."""
         bottom, top = (theta * float(self.scale[1]) for theta in (self.below, self.within[1][1]))
         if self.fin:
             top = self.box.high + self.box.low - bottom
@@ -66,13 +66,11 @@ class Hole:
 class CollarPlan:
     """Numbers of cells of a collar (the cells around a wing's section), the same on all levels."""
 
-    # edge, nose: the counts of `corner_nodes`
-    edge: int
-    nose: int
+    edge: int  # cells from the middle of the collar's rear side to each of its corners
+    nose: int  # the same on the front side
     rows: int  # cells across the collar
-    # low, top: cells from the keel to the collar, and from the collar to the crown or to a fin above
-    low: int
-    top: int
+    low: int  # cells from the keel to the collar
+    top: int  # cells from the collar to the crown, or to a fin above
     first: float  # height of the cells at the wing
     straight: float = 0.0  # weight of straight lines (`collar`)
     sine: float = 1.0  # smallest sine of an angle in the collars
@@ -80,9 +78,10 @@ class CollarPlan:
 
 
 def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
-    """Return how many nodes from trailing edge and nose of a wing lines to the corners around it begin.
+    """Return at which nodes of a wing's section the grid lines to corners of the rectangle around it begin.
 
-    Corners are those of a rectangle around a section. The numbers are means over the sections `holes`.
+    Nodes are counted from the trailing edge for rear corners, and from the nose for front corners. Both
+    numbers are means over the sections `holes`.
     """
     corners = [corner_nodes(hole.plane, hole.box, _CORNER) for hole in holes]
     edge, nose = (round(sum(each) / len(corners)) for each in zip(*corners, strict=True))
@@ -94,8 +93,7 @@ def planned_collar(
 ) -> "tuple[CollarPlan, list[CollarLevel]]":
     """Return numbers of cells, equal for the grids (collars) around all sections of a wing, and these grids.
 
-    `holes` are the sections of the wing from the root on. `corners` is a result of `planned_corners`. Numbers
-    of cells are as small as growth permits.
+    `holes` are the sections of the wing from the root on. `corners` is a result of `planned_corners`.
     """
     edge, nose = corners
     plan = CollarPlan(edge, nose, 4, FEWEST, FEWEST, first)
@@ -120,18 +118,17 @@ def planned_collar(
 
 @dataclass(frozen=True, eq=False)
 class CollarLevel:
-    """The collar, a grid around the section of a wing on one surface around the body."""
+    """A collar: a ring of cells around a wing's section, both on a surface that encloses the body."""
 
-    # plan, hole: numbers of cells, and the section
-    plan: CollarPlan
-    hole: Hole
-    ring: Floats  # (n, rows + 1, 2) nodes of the collar, in lengths in space
+    plan: CollarPlan  # numbers of cells
+    hole: Hole  # the section
+    ring: Floats  # (n, rows + 1, 2) nodes: lengths along and around the body, in the unit of x, y, z
     between: float  # smallest sine between its lines, before nodes are placed on them
     last: tuple[float, float, float, float]  # outermost cells in space: before, below, above, behind
 
     @classmethod
     def of(cls, plan: CollarPlan, hole: Hole) -> "CollarLevel":
-        """Return the grid around the wing's section `hole`, with numbers of cells from `plan`."""
+        """Return the collar, the cells around a wing's section `hole`, with numbers of cells from `plan`."""
         plane, box = hole.plane, hole.box
         edge, nose, half = plan.edge, plan.nose, (len(plane) - 1) // 2
         outer = outer_loop(plane, box, (edge, nose))
@@ -163,7 +160,7 @@ class CollarLevel:
 
     @property
     def sides(self) -> tuple[float, float]:
-        """Smallest and largest s, the coordinate along the body, of the rectangle around the section."""
+        """Smallest and largest coordinate s, along the body, of the collar's rectangular outer edge."""
         unit = float(self.hole.scale[0])
         return self.hole.box.front / unit, self.hole.box.back / unit
 
@@ -177,7 +174,7 @@ class CollarLevel:
 
     @cached_property
     def beside(self) -> tuple[float, float]:
-        """Lengths, measured around the body, of the first cells below and above the grid around the wing."""
+        """Circumferential lengths of the first cells below and above the collar (the cells around a wing)."""
         outer, half = self.ring[:, -1, 1], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
         corners = (half + nose, len(outer) - 1 - edge), (half - nose, edge)
@@ -192,7 +189,7 @@ class CollarLevel:
 
     @cached_property
     def low_and_top(self) -> tuple[Floats, Floats]:
-        """Values of theta, ascending, of nodes below and of nodes above the collar (cells at the wing)."""
+        """Circumferential angles of nodes: from the keel (0) to the collar, and from it to the crown (pi)."""
         out = []
         for cells, way, step in zip(
             (self.plan.low, self.plan.top), self.hole.bands, self.beside, strict=True
@@ -219,13 +216,13 @@ class CollarLevel:
 
     @property
     def long_sides(self) -> tuple[Floats, Floats]:
-        """Positions s along the body, descending, of the grid's outer nodes below the wing, and above it."""
+        """Positions s along the body, descending, of nodes on the collar's lower and on its upper edge."""
         s, half = self.ring[:, -1, 0] / self.hole.scale[0], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
         return s[half + nose : 2 * half - edge + 1][::-1], s[edge : half - nose + 1]
 
     def collar(self) -> Floats:
-        """Return nodes s, theta (n, rows + 1, 2) around the wing; around a fin, only the half theta <= pi."""
+        """Return nodes (n, rows + 1, 2): s along and theta around the body; for a fin, on one side only."""
         ring = self.ring / self.hole.scale
         if not self.hole.fin:
             return ring

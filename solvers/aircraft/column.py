@@ -65,7 +65,7 @@ class ColumnPlan:
 
     @property
     def beside(self) -> tuple[int, int]:
-        """Numbers of cells along the front and along the back of the collars (the blocks around wings)."""
+        """Numbers of cells, from bottom to top, on front and back of the blocks around wing and fin."""
         shares = [1 if self.fin and each is self.collars[-1] else 2 for each in self.collars]
         before = sum(n * each.nose for n, each in zip(shares, self.collars, strict=True))
         return before, sum(n * each.edge for n, each in zip(shares, self.collars, strict=True))
@@ -91,9 +91,10 @@ class ColumnPlan:
 def planned_column(
     holes: Sequence[Sequence[Hole]], first: float, growth: float
 ) -> tuple[ColumnPlan, list[ColumnLevel]]:
-    """Return numbers of cells for patches at a wing and a fin, and the patches on each surface (level).
+    """Return numbers of cells for patches at a wing, a fin or both, and the patches on each surface.
 
-    `holes` has the sections of a wing, of a fin, or of both in nested surfaces around the body.
+    The surfaces are nested around the body. `holes` has an item for the wing, one for the fin, or both
+    in this order. An item has one section in each surface.
     """
     corners = planned_corners([hole for each in holes for hole in each])
     collars, levels = zip(*(planned_collar(each, corners, first, growth) for each in holes), strict=True)
@@ -116,30 +117,33 @@ class ColumnLevel:
     plan: ColumnPlan  # numbers of cells
     levels: tuple[CollarLevel, ...]  # cells around the wing, the fin, or both, the fin last
     below: Floats | None = None  # prescribed theta of the nodes from the keel to these cells
-    # keel, crown: zeta there, if other than at the first of these cells
-    keel: float | None = None
-    crown: float | None = None
+    keel: float | None = None  # zeta at the keel, if other than at the first of these cells
+    crown: float | None = None  # zeta at the crown, if other than there
 
     @classmethod
     def of(cls, plan: ColumnPlan, holes: Sequence[Hole]) -> ColumnLevel:
-        """Return the patches around `holes`; a hole is where a wing or a fin meets the body."""
+        """Return the patches on a surface around the body; `holes` are the sections of wing or fin there."""
         levels = (CollarLevel.of(*each) for each in zip(plan.collars, holes, strict=True))
         return cls(plan, tuple(levels))
 
     def with_counts(self, plan: ColumnPlan) -> ColumnLevel:
-        """Return the patches with numbers of cells from `plan`; grids around wing and fin stay unchanged."""
+        """Return the patches with cell counts from `plan` below and above the cells around wing and fin."""
         levels = (replace(each, plan=counts) for each, counts in zip(self.levels, plan.collars, strict=True))
         return replace(self, plan=plan, levels=tuple(levels))
 
     def beside_fin(self, fin: ColumnLevel) -> ColumnLevel:
-        """Return the patches with another zeta at the top of the body: the mean with the zeta of `fin`."""
+        """Return the patches with another zeta, the coordinate away from the body, at their upper edge.
+
+        It is the mean of zeta here and at the neighbouring `fin`.
+        """
         zeta = self.zeta
         return replace(self, crown=zeta + 0.5 * (fin.levels[-1].hole.zeta - zeta))
 
     def beside_wing(self, wing: ColumnLevel, side: Side) -> ColumnLevel:
-        """Return the patches of a fin with theta and zeta nearer to those of the patches at the next `wing`.
+        """Return the patches of a fin, with nodes more similar to those at a neighbouring `wing`.
 
-        Theta changes below the fin, zeta at the keel. `side` is the edge of the wing's patches near the fin.
+        Below the fin, nodes move around the body. At the bottom of the body, they move towards the body or
+        away from it. `side` is the edge of the wing's patches that is next to the fin.
         """
         own, others = self.low, side[0][: len(self.low), 1]
         keel = self.zeta + _FOLLOWING * (wing.zeta - self.zeta)
@@ -147,7 +151,7 @@ class ColumnLevel:
 
     @property
     def zeta(self) -> float:
-        """Coordinate zeta (0 on the body, 1 in the far field) of the wing; of the fin if there is no wing."""
+        """Mean zeta (0 on the body, 1 in the far field) of the wing's section; without wing, of the fin's."""
         return self.levels[0].hole.zeta
 
     @property
@@ -156,7 +160,7 @@ class ColumnLevel:
         return self.levels[0].low_and_top[0] if self.below is None else self.below
 
     def above(self) -> tuple[float, tuple[float, float]]:
-        """Return the distance between the grids around wing and fin, and lengths of the end cells between."""
+        """Return lengths around the body: of the gap between wing's and fin's cells, and of its end cells."""
         wing, fin = self.levels
         low, high = self._gap
         rho = 0.5 * float(wing.hole.scale[1] + fin.hole.scale[1])
@@ -181,7 +185,7 @@ class ColumnLevel:
 
     @property
     def sides(self) -> tuple[Side, Side]:
-        """Nodes and cell lengths on the front and the back edge of all patches together, keel to crown."""
+        """Front and back edge of the patches: nodes (n, 3) from the keel up, lengths (n,) of cells there."""
         return self._side(0), self._side(1)
 
     def _side(self, which: int) -> Side:
@@ -217,7 +221,10 @@ class ColumnLevel:
         return self.zeta if self.crown is None else self.crown
 
     def patches(self) -> list[Floats]:
-        """Return nodes s, theta, zeta (ni, nj, 3) of patches: around, above, below a wing, around a fin."""
+        """Return nodes (ni, nj, 3) of patches: around the wing, above it, below it, and around the fin.
+
+        Without a wing: around the fin, and below it. Coordinates are along, around and away from the body.
+        """
         below, above = self.levels[0].long_sides
         zeta = self.zeta
         patches = [_on(self.levels[0].collar(), zeta)]
@@ -237,10 +244,7 @@ def _fade(theta: Floats) -> Floats:
 
 
 def _followed(own: Floats, others: Floats) -> Floats:
-    """Return angles (n,) between `own` and `others`, with the last cell of `own`.
-
-    Cells away from it change by at most the factor `WIDEST`.
-    """
+    """Return angles (n,) between `own` and `others`, with the last cell of `own` and growth to `WIDEST`."""
     mine, wanted = (log(np.diff(each)[::-1]) for each in (own, others))
     cone = log(np.float64(WIDEST)) * np.arange(len(mine))
     wanted = mine + _FOLLOWING * (wanted - mine)

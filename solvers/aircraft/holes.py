@@ -25,9 +25,8 @@ def columns_of(
 ) -> tuple[tuple[int, ...], ...]:
     """Return groups of wings, as indices, from nose to tail; a fin above a wing is in the wing's group.
 
-    `sections` has for each wing its nodes (k, n, 3) on k surfaces around the body.
-
-    Raises InputError if a fin is above two wings.
+    `sections` has for each wing its nodes (k, n, 3) on k surfaces around the body. Raises InputError if
+    a fin is above two wings.
     """
     columns = [[k] for k in range(len(wings))]
     along = [_along(space, *pair) for pair in zip(wings, sections, strict=True)]
@@ -95,7 +94,6 @@ def holes_of(
     """Return the sections of wings on k surfaces around the body, by column, by wing and by surface.
 
     The groups of wings, `columns`, go from nose to tail. `sections` has k x n nodes (k, n, 3) for each wing.
-
     Raises InputError if a section meets the plane of symmetry, or if wings are too close to each other.
     """
     for column, members in zip(columns, sections, strict=True):

@@ -10,9 +10,7 @@ from meshonet.geometry.curves.cubic import sampled
 from meshonet.solvers.rows.span_spacing import smooth_arcs
 
 _FINE = 65  # number of places on a line at which its length is measured
-
 Points: TypeAlias = Callable[[Floats], Floats]  # function from places (..., 3) to points (..., 3) in space
-
 Side: TypeAlias = tuple[Floats, Floats]
 """Nodes (n, 3) of s, theta, zeta from keel to crown beside a column, and the cell lengths (n,) there in s."""
 
@@ -20,10 +18,10 @@ Side: TypeAlias = tuple[Floats, Floats]
 def lines_between(
     points: Points, begin: Floats, end: Floats, sizes: tuple[Floats, Floats], cells: int
 ) -> Floats:
-    """Return nodes (n, cells + 1, 3) on n lines from the points `begin` (n, 3) to the points `end` (n, 3).
+    """Return nodes (n, cells + 1, 3) on n lines from `begin` (n, 3) to `end` (n, 3).
 
     Coordinates are s, theta, zeta: along, around and away from a body. `points` maps them to x, y, z. `sizes`
-    are steps of s (n,) in first and in last cells. Between these, cell lengths in x, y, z change smoothly.
+    are differences of s (n,) across the first and the last cells. Cell lengths in x, y, z change smoothly.
     """
     lines, arcs, ends = _measured(points, begin, end, sizes)
     nodes = sampled(lines, arcs, smooth_arcs(arcs[:, -1], ends, cells))
@@ -34,7 +32,7 @@ def lines_between(
 def ways_between(
     points: Points, begin: Floats, end: Floats, sizes: tuple[Floats, Floats]
 ) -> tuple[Floats, tuple[Floats, Floats]]:
-    """Return arc lengths (n,) in space of the lines of `lines_between`, and of their first and last cells."""
+    """Return lengths (n,) of the lines of `lines_between`, and of their first and last cells, in x, y, z."""
     _, arcs, ends = _measured(points, begin, end, sizes)
     return arcs[:, -1], ends
 

@@ -55,7 +55,7 @@ class LoftedMap(BodyMap):
         return np.stack([x, y, z], axis=-1).reshape(places.shape)
 
     def places(self, points: Floats, near: Floats | None = None) -> Floats:
-        """Return s, theta, zeta (..., 3), as in `BodyMap`, of `points` (..., 3); `near` is a guess."""
+        """Return s, theta, zeta of `BodyMap` (..., 3) at points x, y, z; `near` are first guesses."""
         wanted = points.reshape(-1, 3)
         at = (self._first_places(wanted) if near is None else near.reshape(-1, 3)).copy()
         steps = np.diag([_STEP * self.body.length, _STEP, _STEP])
@@ -78,7 +78,7 @@ class LoftedMap(BodyMap):
         return np.asarray(norms(self._around(places)))
 
     def steepness(self, places: Floats) -> Floats:
-        """Return angles (...) in radians from z to lines along theta at `places` (..., 3): s, theta, zeta."""
+        """Return angles (...) in radians from lines around the body to the z axis, at s, theta, zeta."""
         around = np.abs(self._around(places))
         return np.asarray(arctan2(around[..., 1], around[..., 2]))
 
@@ -87,7 +87,7 @@ class LoftedMap(BodyMap):
         return (self.points(places + step) - self.points(places - step)) / (2.0 * _STEP)
 
     def normals(self, foot: Floats) -> Floats:
-        """Return unit normals (n, 3) at points of the body, `foot` (n, 3): s, theta, zeta as in `BodyMap`."""
+        """Return the body's unit normals in x, y, z (n, 3), at `foot` (n, 3): s, theta, zeta of `BodyMap`."""
         length, normals = self.body.length, self._normals(_off_poles(foot, self.body.length))
         theta = np.linspace(0.0, np.pi, _AROUND)
         for end in (0.0, length):

@@ -39,7 +39,7 @@ def section_loft(stack: Stack, unit: Floats) -> Loft:
 
 
 def fin_loft(fin: Fin, unit: Floats) -> Loft:
-    """Return lines along the span y on the half z >= 0 of a fin; the first is at the nose.
+    """Return spanwise lines (along y) on the half z >= 0 of a fin, from its leading to its trailing edge.
 
     `unit` (sections, n, 2) are nodes around its sections, scaled to chord 1.
     """
@@ -56,9 +56,10 @@ def fin_loft(fin: Fin, unit: Floats) -> Loft:
 
 
 def surface_loft(wing: SurfaceWing, body: Body, plan: Around) -> Loft:
-    """Return lines on the surface of a wing, distributed as in `plan`, with two cells on the blunt base.
+    """Return spanwise lines on the surface of a wing, distributed around it as in `plan`.
 
-    The first and the last line are in the middle of the base. Lines that end on the body continue inside it.
+    Two cells are on the blunt trailing edge; the first and the last line are both in its middle. Where the
+    given surface ends on the body, lines are extended into the body.
     """
     base = float(np.median(wing.base(wing.z)))
     q = np.linspace(0.0, 1.0, plan.cells + 1)

@@ -42,9 +42,8 @@ class AircraftPlan:
     holes: tuple[tuple[tuple[Hole, ...], ...], ...]  # sections by column, wing and key level
     levels: LevelPlan  # numbers of cells that are the same on all levels
     tips: tuple[tuple[Floats, Floats], ...]  # nodes (m, k, 3) of ring and core that fill the tip of each wing
-    # span, beyond: numbers of cells from the body to the tips, and beyond
-    span: int
-    beyond: int
+    span: int  # number of cells from the body to the tips
+    beyond: int  # number of cells from the tips to the far field
     growth: float  # largest growth ratio away from walls
     halves: int  # 2 if the grid has both halves of the aircraft, else 1
 
@@ -83,7 +82,7 @@ class AircraftPlan:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on changes of the sections."""
+        """Sentences that tell the user how sections of the wings were changed."""
         return tuple(dict.fromkeys(note for wing in self.wings for note in wing.notes))
 
     @property

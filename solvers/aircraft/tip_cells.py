@@ -9,7 +9,6 @@ from meshonet.solvers.rows.columns import arcs_of
 # exponent of the size ratio by which cells far away are thicker; with 1, levels would be very oblique
 _SHARE = 0.5
 _WAY = 5.0  # distance from the tip to these cells, divided by the thickness of layers up to the even cells
-
 _ROUNDS = 40  # largest number of steps of Newton's method for the growth ratio
 _STILL = 1e-13  # change of the logarithm of the growth ratio below which the iteration ends
 
@@ -37,10 +36,10 @@ def arcs_beyond(lengths: Floats, first: Floats, cells: int) -> Floats:
 
 
 def last_cells(points: Floats, section: Indices, even: Floats, first: float, growth: float) -> Floats:
-    """Return heights (p,) of the cells at the level of the wing tip, at `points` (p, 3) on that level.
+    """Return spanwise heights (p,) of the cells that end at a surface of nodes through the wing tip.
 
-    Heights are `first` at the points with indices `section`, which are on the wing. With the distance from
-    the wing they increase up to `even` (p,).
+    `points` (p, 3) are the nodes of this surface. Heights are `first` at those with indices `section`, which
+    are on the wing. Farther away they increase up to `even` (p,), the faster the larger `growth` is.
     """
     wing = points[section]
     away = np.array([norms(wing - point).min() for point in points])

@@ -39,10 +39,10 @@ def off_body(points: Floats, above: Floats, rings: Sequence[Indices], first: flo
 
 
 def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Floats:
-    """Return `points` (k, p, 3) on p spanwise lines, moved so that cells leave a wing normal to its span.
+    """Return `points` (k, p, 3), moved so that grid lines start from a wing at right angles to its span.
 
-    `ring` (n, m) are indices of lines: m away from the wing and n around it. The last of the n coincides with
-    the first if `closed`. First cells are `first` high.
+    k points are on each of p spanwise lines. `ring` (n, m) are indices of these lines: n around the wing, m
+    outwards. If `closed`, the last of the n repeats the first. Cells at the wing are `first` high.
     """
     lines = np.moveaxis(points[:, ring], 2, 0)  # (m, k, n, 3), from the wing outwards
     wall, away = lines[0], (lines[1] - lines[0]) / first
@@ -69,10 +69,10 @@ def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Fl
 def across_tip(
     low: Floats, high: Floats, ring: Indices, wing: WingLines, first: float
 ) -> tuple[Floats, Floats]:
-    """Return the nodes `low` inboard and `high` outboard of a wing tip, moved for less oblique cells there.
+    """Return nodes on both sides of a wing tip, moved so that cells at the tip are less oblique.
 
-    Both are (k, p, 3): k nodes on each of p lines along the span. `ring` (n, m) are indices of lines, n
-    around the wing and m away from it. Nodes far from the tip move less. First cells stay `first` high.
+    `low` (inboard of the tip) and `high` (outboard) are (k, p, 3): k nodes on each of p spanwise lines.
+    `ring` (n, m) are indices of lines: n around the wing, m outwards. Cells at the wing stay `first` high.
     """
     level = high[0, ring]
     along, lines = wing.axis, low[-1, ring[:, 0]] - low[-2, ring[:, 0]]
@@ -107,10 +107,10 @@ def _chord(edge: Floats, wing: WingLines) -> float:
 
 
 def off_tip(points: Floats, cap: Indices, ring: Indices, wing: WingLines) -> Floats:
-    """Return nodes `points` (k, p, 3) of p lines beyond a wing tip, moved so that lines start along normals.
+    """Return nodes `points` (k, p, 3) of p lines beyond a wing tip, moved so that lines start normal to it.
 
-    `cap` (c,) are the indices of lines that start on the tip. `ring` (n, m) are those of lines beside it, n
-    around the tip and m away from it; these move less the farther they are from the tip.
+    `cap` (c,) are indices of lines that start on the tip. `ring` (n, m) are indices of lines beside the tip:
+    n around it, m outwards. Lines far from the tip move less.
     """
     apart = arc_lengths(points[0, ring])
     fade = 1.0 - apart / apart[:, -1:]

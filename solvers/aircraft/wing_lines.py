@@ -24,7 +24,6 @@ _BASE = 2  # number of cells across a base
 _SHARP = 0.001  # default smallest height of the base of a wing given as a surface, in chords
 _ROUNDS = 6  # scalings of a fraction: lines are nearly straight over a first cell
 _PLACES = 65  # number of heights at which a line is compared with the body in each step
-
 _PASSES = 6  # number of steps; each divides the interval around a crossing
 
 
@@ -81,7 +80,7 @@ class WingLines:
         return cls(loft, name, roots, notes, fin)
 
     def points(self, parts: Floats) -> Floats:
-        """Return points (k, n, 3) on the lines at fractions `parts` (k, n) of the height from root to tip."""
+        """Return points (k, n, 3), k on each of n lines, at fractions `parts` of the span from the root."""
         z = self.roots + parts * (self.loft.tip - self.roots)
         return np.stack([self.loft.line(k, z[:, k]) for k in range(z.shape[1])], axis=1)
 

@@ -21,7 +21,7 @@ NEAR, FAR = 4.0, 10.0
 
 
 def openings(z: Any, xp: Any) -> Any:
-    """Return weights (.., 2, 2) at grid corners: 1 for linear interpolation if acute, 0 for splines if wide.
+    """Return weights (.., 2, 2) of linear interpolation at grid corners: 1 at acute angles, 0 at wide angles.
 
     `z` (.., m, n) are the nodes as complex numbers, an array of the module `xp`, which is numpy or torch.
     """
@@ -44,7 +44,10 @@ def fading(m: int, n: int) -> Floats:
 
 @lru_cache(maxsize=16)
 def cubic(n: int, count: int) -> Floats:
-    """Return the matrix (count, n) of what a spline's second derivatives at n knots add to linear values."""
+    """Return the matrix (count, n) from a spline's second derivatives to spline minus linear interpolant.
+
+    The derivatives are at n uniform knots, the results at `count` uniform places.
+    """
     return _weighted(n, count, 2)
 
 

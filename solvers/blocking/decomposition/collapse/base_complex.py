@@ -43,8 +43,9 @@ class BaseComplex:
     def sides(self) -> tuple[Indices, Indices, Indices]:
         """Edges along the south, north, west and east side of each of b blocks.
 
-        The first array (k,) lists the edges of each side, and -1 after each side. The second (4 b,) has the
-        place of each side's first edge in the list, the third (4 b,) the index of its set of opposite sides.
+        The first array (k,) lists the edges of one side after another, and -1 after each side. The second
+        (4 b,) has the place in this list at which each side begins. The third (4 b,) has the index of each
+        side's chord; opposite sides of a block are in the same chord.
         """
         lines = [line for block in self.blocks for line in (block[:, 0], block[:, -1], block[0], block[-1])]
         nodes = np.concatenate(lines)

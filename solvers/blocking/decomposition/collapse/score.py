@@ -27,7 +27,7 @@ SIZES = 8.0  # price in degrees of mean deviation if all cells are too long or s
 def score(blocks: BaseComplex, price: float = PRICE, wanted: Floats | None = None) -> float:
     """Return the score of blocks, a weighted sum of penalties in degrees; lower is better.
 
-    Penalties are for angles other than 90 degrees, for the turning of walls along an edge of the mesh, for a
+    Penalties are for angles other than 90 degrees, for mesh edges along which a wall turns too much, for a
     wrong number of quads at wall nodes, and for uneven sizes. Each block adds `price`. `wanted` (e,) are
     target lengths of the edges; by default all edges have the same target.
     """
@@ -46,9 +46,10 @@ def score(blocks: BaseComplex, price: float = PRICE, wanted: Floats | None = Non
 
 
 def size_spread(blocks: BaseComplex, wanted: Floats | None) -> float:
-    """Return how unequal the sides between the blocks of a row are: the variance of log(length).
+    """Return how unequal the widths of each row of blocks are: the variance of log(width) within a row.
 
-    It is averaged over all rows, weighted by areas. Lengths are divided by targets `wanted` (e,), if given.
+    A width is the length of a block side that the row crosses. Edge lengths are divided by targets `wanted`
+    (e,), if given. The variance is averaged over all rows, weighted by areas.
     """
     lengths = log(blocks.side_lengths(wanted))
     chord = blocks.sides[2]

@@ -100,7 +100,7 @@ class Parametrisation:
         return rows[kept], column[kept].astype(np.intp), value[kept]
 
     def solve(self, weights: Floats) -> Complexes:
-        """Return the solution u + i v (t, 3) at the corners of the triangles, which have `weights` (t,)."""
+        """Return coordinates u + i v (t, 3) at the corners of t triangles, for triangle `weights` (t,)."""
         stiffness = (weights[:, None] * self._values)[self._there]
         values = np.concatenate([stiffness, self._coefficients])
         scale = 1.0 / max(float(np.abs(stiffness).mean()), 1e-300)
@@ -120,6 +120,6 @@ class Parametrisation:
         return np.asarray(coords[0] + 1j * coords[1])
 
     def jacobians(self, coords: Complexes) -> Floats:
-        """Return Jacobians (t,) of triangles, divided by their targets, for map values `coords` (t, 3)."""
+        """Return Jacobians (t,) of the map, divided by targets; `coords` (t, 3) are u + i v at corners."""
         first, second = coords[:, 1] - coords[:, 0], coords[:, 2] - coords[:, 0]
         return np.asarray(times(np.conj(first), second).imag / (2.0 * self.surface.areas * self._wanted))
