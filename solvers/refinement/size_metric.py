@@ -70,8 +70,8 @@ class SizeMetric:
     def near(self, places: Floats, directions: Floats) -> Near:
         """Return the wall point nearest to each edge, its distance, and the edge's angle to the normal there.
 
-        `places` (m, 2) are the midpoints of the edges, `directions` (m, 2) their directions. If this
-        metric joins several, there is one nearest point for each of these.
+        `places` (m, 2) are the midpoints of the edges, `directions` (m, 2) their directions. If this metric
+        joins several, there is one nearest point for each of these.
         """
         places = np.ascontiguousarray(places)
         size = np.maximum(np.hypot(directions[:, 0], directions[:, 1]), 1e-300)

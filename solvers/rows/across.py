@@ -19,7 +19,7 @@ class ChannelLines:
 
     upper: Floats  # (n,) places u (see `SectionPlane`) on the upper side of a blade, from 0 to 0.5
     lower: Floats  # (n,) 1 - u of the opposite places, on the lower side of the next blade
-    slant: Floats  # (n,) tangent of the lean if an end moves by 1 in u; 0 where nothing is opposite
+    slant: Floats  # (n,) lean (see `links`) if an end moves by 1 in u; 0 where nothing is opposite
 
     @classmethod
     def of(cls, planes: Sequence[SectionPlane]) -> Self:
@@ -62,10 +62,10 @@ class ChannelLines:
         return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
 
     def aside(self, pairs: Floats) -> Floats:
-        """Return (p,) u of the ideal second end of each line across the channel, minus u of its second end.
+        """Return (p,) by how much the place of the second end of each line is less than its ideal value.
 
-        u runs from 0 to 1 around a blade; `pairs` (p, 2) has it at both ends. From the same first end to the
-        ideal second end, a line is nearly normal to the layers of both blades.
+        `pairs` (p, 2) are the places of both ends, from 0 to 1 around a blade, of lines across the channel
+        between two blades. With the ideal value, a line is nearly normal to the layers of both blades.
         """
         upper, lower = (wrapped(each, _FROM) for each in (pairs[:, 0], 1.0 - pairs[:, 1]))
         return np.asarray(lower - np.interp(upper, self.upper, self.lower))

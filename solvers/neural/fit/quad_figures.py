@@ -21,8 +21,8 @@ Grids = NDArray[np.complexfloating[Any, Any]]
 def held_out_figures(answers: Grids, base: Grids, winslow: Grids, variational: Grids) -> dict[str, Any]:
     """Return error measures, by name, of the grids that a network predicts for m domains.
 
-    Nodes are complex. `answers` (m, 2, n, n) are the network's Winslow and variational grids, made from the
-    grids `base` (m, n, n). The solvers' grids are `winslow` and `variational`. In the names, ``max``
+    Nodes are complex numbers. `answers` (m, 2, n, n) are the network's Winslow and variational grids, made
+    from the grids `base` (m, n, n). The solvers' grids are `winslow` and `variational`. In the names, ``max``
     is the largest cell angle of a grid, ``mean`` the mean of the largest angles of its cells. A gain is
     (W - P) / (W - V), where W, P and V are such angles in `winslow`, in the network's variational grids, and
     in `variational`, summed over the domains in which the first two of these grids are not folded.
