@@ -41,8 +41,9 @@ class Rise:
         Parameters
         ----------
         row, zone, blade : the row, and the height ranges (zones) of the gap and of the blade.
-        around, lines : functions of the height, for k grid lines off the blade: places, 0 to 1 around it,
-            where they begin; s (along the channel) and theta of all their k * (layers + 1) nodes.
+        around : places (0 to 1 around the blade) where k grid lines leave it, as functions of the height.
+        lines : s (along the channel) and theta of the k * (layers + 1) nodes on these lines, also as
+            functions of the height.
         """
         end, up, width = (blade.high, 1.0, row.tip_gap)
         if zone.low == 0.0:
