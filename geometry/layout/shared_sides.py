@@ -47,7 +47,7 @@ def connection_of(
 
 
 def shared_in_part(lines: list[Line]) -> tuple[list[Connection], list[tuple[Line, int]]]:
-    """Return connections between parts of block sides, and the unconnected parts with their first indices."""
+    """Return connections of parts of block sides, and unconnected parts with the index where each begins."""
     if not lines:
         return [], []
     edges = np.concatenate([np.sort([nodes[:-1], nodes[1:]], axis=0) for _, _, nodes in lines], axis=1)

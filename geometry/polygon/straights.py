@@ -38,8 +38,8 @@ def straight_intervals(points: Floats, corners: Indices) -> Bools:
     """Return which intervals (n,) of a closed polygon `points` (n, 2) are straight lines.
 
     A straight interval is at least 4 times as long as the one before or after it, with no corner between the
-    two. At its ends, except at corners, it must be nearly tangent to the circular arc from there through the
-    next two points. `corners` are indices of points.
+    two. At each end that is no corner, it is nearly tangent to the circular arc through this end and the next
+    two points. `corners` are indices of points.
     """
     turn, joined = turning(points, closed=True), np.ones(len(points), dtype=bool)
     turn[corners], joined[corners] = 0.0, False

@@ -65,8 +65,8 @@ def lines(grid: Grid, nodes: Vertices, *, all_measures: bool = True) -> Lines:
 def lines_of(grid: Grid, parts: list[BlockLines], *, along: bool = True, places: bool = True) -> Lines:
     """Return growth ratios and turning angles on all grid lines in `parts`.
 
-    Values along each direction and from each wall include percentiles if `along` is set. Values at nodes
-    inside blocks, and those at nodes on sides between blocks, include percentiles if `places` is set.
+    Statistics along each block direction, and along lines from each wall, include percentiles if `along` is
+    set. Statistics at nodes inside blocks, and at nodes on sides, include percentiles if `places` is set.
     """
     family = {(m.block, m.axis): k for k, members in enumerate(families(grid)) for m in members}
     walls = [(patch.name, family[patch.block, patch.place[0]]) for patch in grid.walls()]
@@ -104,7 +104,7 @@ def part_of_values(
     """Return statistics of growth ratios, and of turning angles if they are given, at an array of nodes.
 
     `values` yields the ratios (m, n[, l]) on grid lines along `axis`, then the angles. `place` is the first
-    node: block, i, j[, k]. `inside`: nodes are inside the block, not on a side. `kept`: percentiles as well.
+    node: block, i, j[, k]. `inside`: nodes are inside the block, not on a side. `kept`: include percentiles.
     """
     tallies = Tally(kept=kept), Tally(kept=kept)
     for tally, each in zip(tallies, values, strict=False):

@@ -90,7 +90,7 @@ class BladeProfile:
         return made
 
     def aligned(self, places: Floats) -> Self:
-        """Return the profile with u, a coordinate around it, rescaled so that it is `places` at corners."""
+        """Return the profile, the coordinate u around it rescaled so that u is `places` (c,) at corners."""
         made, own = copy(self), self.corner_places()
         u = np.concatenate([_ENDS, places])
         way = np.concatenate([self._stops[1], np.interp(own, *self._stops)])
@@ -203,7 +203,7 @@ class BladeProfile:
         return np.asarray(np.mod(self.leading + np.interp(u, *self._stops), self.curve.length))
 
     def corner_places(self) -> Floats:
-        """Return places u (c,) of corners. u goes around from -0.25 to 0.75: 0 leading, 0.5 trailing edge."""
+        """Return places u (c,) of corners, from -0.25 to 0.75 around the profile; 0 is the leading edge."""
         u, way = self._stops
         at = np.interp(np.mod(self.curve.corners - self.leading, self.curve.length), way, u)
         return np.sort(wrapped(at, -0.25))

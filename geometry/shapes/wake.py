@@ -41,7 +41,7 @@ def cells_of_wake(
     """Return the number of cells along the wake of a C grid with `ni` nodes along xi.
 
     If `nodes_wanted`, the number of nodes on the wake, is None, cells grow by 13.5 % from the length `first`
-    and fill `length`. Their number is limited to 20 to 23 % of all cells along xi, and is rounded to a
+    and fill `length`. Their number is kept between 20 and 23 % of all cells along xi, and rounded to a
     multiple of one of `steps`. Raises InputError: too few nodes for the wall.
     """
     if nodes_wanted is not None:

@@ -108,8 +108,8 @@ class FirstCell:
     ) -> tuple[str, ...]:
         """Return a note on how the first-cell height follows from y+; an empty tuple without y+.
 
-        `unit` is the reference length of y+; the text `where` says so, e.g. ``on a chord of 2``. The field
-        `length`, if set, is used and named instead. Heights in the note are times `scale`, in `in_unit`.
+        `unit` is the reference length of y+; the text `where` names it, e.g. ``on a chord of 2``. The field
+        `length`, if set, is used and named instead. The note gives heights times `scale`, in `in_unit`.
         """
         from meshonet.geometry.spacing.y_plus import height_note
 

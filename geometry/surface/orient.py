@@ -52,8 +52,8 @@ def turned_alike(
 def closing_axes(nodes: Floats, sides: Indices, planes: Sequence[Plane]) -> list[int]:
     """Return the directions (0, 1, 2 for x, y, z) of the normals of planes of symmetry that close a surface.
 
-    `sides` is the result of `open_sides`. If the open edges outside one plane are only the rim of a small
-    hole, only this plane's direction is returned. Half a fuselage that is open at its end is an example.
+    `sides` is the result of `open_sides`. If all open edges are in one plane, except the rim of a small hole,
+    only this plane counts. An example is half a fuselage with an open end.
     """
     axes = sorted({plane.axis for plane in planes})
     slack = FLAT * extent_of(nodes)

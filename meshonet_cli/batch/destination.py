@@ -141,7 +141,7 @@ class Destination:
         return PartFiles(Path(self.text), request, size)
 
     def check_several(self, item: Item[Any]) -> None:
-        """Raise InputError if the output can store only one of the several results of the input of `item`."""
+        """Raise InputError, which names the input of `item`, if the output cannot store several results."""
         if not (self.each or self.format.many):
             problem = f"holds several grids or boundaries, and a {self.format.name} file holds one"
             raise InputError(problem, self._named("index"), source=item.source)

@@ -57,7 +57,7 @@ class PartMaker:
     def __call__(self, part: PartTask) -> PartDone:
         """Make a part atomically.
 
-        Raises OtherPartsError if it exists (with `skip_existing`: and differs), InputError if writing fails.
+        Raises OtherPartsError if it exists (with `skip_existing`, if different), InputError if writing fails.
         """
         inputs = [each for entry in part.inputs for each in digests_of(entry)]
         state = self.files.state(part.number, inputs)

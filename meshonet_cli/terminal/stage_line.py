@@ -42,7 +42,7 @@ class StageLine:
             self._clear()
 
     def text(self) -> str:
-        """Return the text of the line: elapsed time, stage, and progress or, if unknown, `detail`."""
+        """Return the text of the line: elapsed time, stage, and progress or, if unknown, a detail."""
         stage, now = self._stage, time.perf_counter()
         spent = now - self._begun
         if spent < DELAY:

@@ -137,14 +137,14 @@ def _shifted(places: Floats, box: Rectangle, towards: float) -> Floats:
 def collar(
     root: Floats, outer: Floats, rows: int, first: float, last: Floats, straight: float = 0.0
 ) -> tuple[Floats, float]:
-    """Return nodes (n, rows + 1, 2) between the closed loops `root` and `outer` (n, 2), and a sine.
+    """Return a grid between two closed loops, and the sine of the smallest angle in a preliminary grid.
 
-    Nodes are placed on the lines of a preliminary grid. The sine is that of the smallest angle in this grid.
+    The nodes (n, rows + 1, 2) are on the lines of the preliminary grid, from `root` to `outer` (n, 2).
 
     Parameters
     ----------
     first, last : lengths of cells at the root, and (n,) at the outer loop.
-    straight : 0: this grid is elliptic; 1: its lines are parabolas normal to the root; between: a mixture.
+    straight : 0: lines of an elliptic preliminary grid; 1: parabolas normal to the root; between: a mixture.
     """
     arcs, lines = _lines(root, outer, straight)
     wanted = _rows(arcs, rows, first, last)

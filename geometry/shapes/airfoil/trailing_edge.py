@@ -40,7 +40,7 @@ def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
     """Return a section with rounded corners at its blunt trailing edge (base), and half the base's length.
 
     `curve` and the returned curve are closed and begin in the middle of the base. The second and the last
-    point of `curve` are the corners. The base now includes the arcs that round them.
+    point of `curve` are the corners. The new base includes the curves that round them.
     """
     length, half = curve.length, float(curve.knots[1])
     across = min(_ACROSS * half, _CAP * chord)
