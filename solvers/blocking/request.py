@@ -97,7 +97,7 @@ class BlockRequest(FirstCell):
         return self.by_wall or self.walls
 
     def default_cells(self, bodies: int) -> int:
-        """Return the number of cells before refinement if none is requested, for a number of bodies.
+        """Return the default number of cells before refinement, for this number of `bodies`.
 
         If the refined grid would have more than `MOST_CELLS`, the number is reduced, but at most by half.
         """
@@ -105,7 +105,7 @@ class BlockRequest(FirstCell):
         return room if usual // 2 <= room < usual else usual
 
     def usual_cells(self, bodies: int) -> int:
-        """Return the default number of cells of a grid that is not refined, for a number of bodies."""
+        """Return the default number of cells of a grid that is not refined, for this number of `bodies`."""
         more = PER_BODY * (min(max(bodies, 1), MOST_BODIES) - 1)
         return LAYERED_CELLS + more if self.at_walls else CELLS
 

@@ -119,7 +119,7 @@ class Cascade:
 
     @property
     def kept(self) -> float:
-        """Largest thickness of the layers over the intended one; below 1 if thicker layers would fold."""
+        """Greatest thickness of layers, relative to the intended one; below 1 if thicker ones would fold."""
         return min(float(self.ring.thickness.max()) / self.thickness, 1.0)
 
     @cached_property
@@ -137,7 +137,7 @@ class Cascade:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """By loop index: arc lengths whose steps between nodes on outer edges of layers should be even."""
+        """By loop index: arc lengths along which nodes are moved so that steps between them are even."""
         return {BLADE: self.ring.along} if self.layers.limit else {}
 
     def factors_at(self, arcs: Floats) -> Floats:

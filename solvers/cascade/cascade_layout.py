@@ -134,7 +134,7 @@ def _rows(cascade: Cascade, layout: Layout, metric: SizeMetric) -> list[Rows]:
 
 
 def straight_rows(cascade: Cascade) -> list[tuple[int, float, float]]:
-    """Return start (loop index), length and axial direction (1, -1) of straight lines to inlet and outlet."""
+    """Return start (loop index), length and axial direction (±1) of the straight rows to inlet and outlet."""
     passage = cascade.passage
     axial = passage.axial(passage.front.curve.points)
     before = cascade.ends[0] - float(axial.min() - passage.inlet)
@@ -187,7 +187,7 @@ def attached_cells(
     """Return the number of cells in the layers, and in the straight rows that end at inlet and outlet.
 
     `counts` are the cells along the edges of each chord (set of opposite edges). `layers` replaces the number
-    of layers. `longest` has, for the keys `INLET` and `OUTLET`, the smallest lengths of the straight rows.
+    of layers. `longest` has lengths for the keys `INLET` and `OUTLET`; shorter rows are counted as so long.
     """
     along = chords.along_loops(counts).tolist()
     total = along[BLADE] * (cascade.rows_of_layers if layers is None else layers)

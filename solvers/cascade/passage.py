@@ -37,7 +37,7 @@ class Passage:
 
     Parameters
     ----------
-    front : the blade, or the outer edge of its layers, with the passage on its left.
+    front : clockwise loop along the blade, or along the outer edge of its layers.
     period : displacement from one blade to the next one on the left of the flow direction.
     centre : point inside the blade from which axial distances are measured.
     inlet, outlet : axial distances from `centre` at which the blocks end upstream and downstream.
@@ -86,24 +86,24 @@ class Passage:
         """Return the distances (n,) of points (n, 2) from the centre along the pitch vector, in pitches."""
         return np.asarray(((complex_of(points) - self.centre) / self.period).real)
 
-    def at(self, axial: Sequence[float], along: Sequence[float]) -> Floats:
-        """Return points (n, 2) at axial distances `axial` (n,), and `along` (n,) pitches, from the centre."""
+    def at(self, axial: Sequence[float], pitches: Sequence[float]) -> Floats:
+        """Return points (n, 2): `centre` moved by lengths `axial` along the axis and by so many `pitches`."""
         centre = pairs_of(np.array(self.centre))
-        return centre + np.array(axial)[:, None] * self.axis + np.array(along)[:, None] * self.pitch
+        return centre + np.array(axial)[:, None] * self.axis + np.array(pitches)[:, None] * self.pitch
 
     def zeta(self, points: Floats) -> Complexes:
-        """Return points (n, 2) as complex numbers ζ (n,); the real axis is axial, the pitch becomes iπ."""
+        """Return complex coordinates ζ (n,) of points (n, 2): real along the axis, and iπ per pitch."""
         return np.asarray(times(1j * np.pi, (complex_of(points) - self.centre)) / self.period)
 
     def of_zeta(self, zeta: Complexes) -> Floats:
-        """Return points (n, 2) of complex `zeta` (n,), where the real axis is axial and the pitch is iπ."""
+        """Return points (n, 2) from complex coordinates `zeta` (n,): the inverse of the method `zeta`."""
         return pairs_of(self.centre + times(zeta, self.period) / (1j * np.pi))
 
     def domain(self, inlet: float, outlet: float) -> Domain:
         """Return the domain of the blocks between the blade, the inlet and the outlet.
 
-        Along the pitch, in pitches from the blade's `centre`, the blocks extend from `inlet` - 1 to `inlet`
-        at the inlet, and from `outlet` - 1 to `outlet` at the outlet.
+        Along the pitch vector, the upper end of the inlet is `inlet` pitches from the blade's `centre`, and
+        that of the outlet `outlet` pitches. The lower ends are one pitch below.
         """
         pitch = abs(self.period)
         x, far = (self.inlet, self.outlet), (self.inlet - pitch, self.outlet + pitch)

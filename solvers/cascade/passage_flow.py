@@ -38,7 +38,8 @@ class PassageFlow:
     ----------
     half : half the length of the slit, h.
     around : (n,) increasing angles ν of points on the blade; the potential is G = h cos ν.
-    strip : (n,) the points mapped to the strip |Im σ| <= π/2; its infinite ends are the ends of the slit.
+    strip : (n,) images σ of the points: the region between blades is mapped to the strip |Im σ| <= π/2, the
+        ends of the slit to infinity.
     away : (n,) ζ - G at the points: their complex coordinates (see `Passage.zeta`) minus the potential.
     """
 
@@ -84,10 +85,11 @@ class PassageFlow:
         return float(before.real), float(behind.real)
 
     def inside(self, places: Complexes) -> Complexes:
-        """Return ζ - G (m,), coordinate minus potential, at `places` σ (m,) in the strip |Im σ| < π/2.
+        """Return complex coordinates minus potentials, ζ - G (m,), of points between the blades.
 
-        Cauchy's integral of ζ - G along the blade is a trapezoidal sum in the variable tanh(σ/2), divided by
-        the same sum for the constant 1 (Helsing, Ojala, J. Comput. Phys. 227 (2008) 2899-2921).
+        `places` (m,) are their images σ in the strip |Im σ| < π/2. Cauchy's integral of ζ - G along the blade
+        is a trapezoidal sum in the variable tanh(σ/2), divided by the same sum for the constant 1 (Helsing,
+        Ojala, J. Comput. Phys. 227 (2008) 2899-2921).
         """
         finite = np.isfinite(self.strip)
         circle = tanh(0.5 * self.strip[finite])

@@ -1,7 +1,4 @@
-"""Numbers of cells along chords, such that sides of a domain have the prescribed numbers of cells.
-
-Sides with certain names have given numbers of cells, and two periodic sides have equal numbers.
-"""
+"""Cell counts of rows of blocks: some sides have prescribed counts, periodic sides have equal counts."""
 
 from collections.abc import Iterable, Mapping
 from itertools import combinations, pairwise
@@ -68,11 +65,10 @@ def suited(
     """Return cell counts of chords (rows of blocks) that satisfy all conditions and are nearest to `counts`.
 
     Counts are at least `least`, multiples of `multiple`, and equal on both sides of periodic pairs. `fixed`
-    prescribes the counts of some chords, by index. A later refinement multiplies all counts by `finer`. If
-    `named`, a side for which the domain prescribes a number of cells then has about `multiple` times as many.
-
-    Raises InputError if given counts contradict each other or are too small; SolverError if no counts are
-    equal along periodic sides.
+    prescribes the counts of some chords, by index. If `named`, a side for which the domain prescribes n cells
+    gets about n * `multiple` / `finer`: later, all counts are multiplied by `finer`, and n is the number in a
+    grid that is coarser than the final one by `multiple`. Raises InputError if given counts contradict each
+    other or are too small; SolverError if no counts are equal along periodic sides.
     """
     sums, alike = sums_of(chords) if named else {}, _alike(chords)
     if not sums and not alike:
@@ -125,7 +121,7 @@ def _conflict(names: tuple[str, ...], given: Mapping[str, int], sums: Sums, leas
 
 
 def nearer(chords: Chords, counts: Indices, multiple: int = 1) -> Indices:
-    """Return cell counts of rows of blocks, scaled to about `multiple` times those prescribed on sides."""
+    """Return `counts` (chords,), scaled so that sides have about `multiple` times their prescribed cells."""
     counts = counts.copy()
     for name, row in sums_of(chords).items():
         total = sum(times * counts[chord] for chord, times in row.items())

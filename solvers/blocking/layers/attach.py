@@ -18,9 +18,9 @@ class Rows:
 
     Parameters
     ----------
-    loop : index of the loop at which the lines begin; the loop at which they end has the same index.
-    nodes : (k, m, 2) nodes of k lines, in the order in which they begin along the loop.
-    arcs : (k,) arc lengths of the ends of the lines along the loop at which they end.
+    loop : index of the loop at which the lines begin. The loop at which they end replaces it.
+    nodes : (k, m, 2) x and y of m nodes on each of k lines, in the order in which they begin along the loop.
+    arcs : (k,) arc lengths, on the loop at which the lines end, of their last nodes.
     layers : whether the new cells are layers at a wall, which no later optimisation moves.
     """
 

@@ -50,8 +50,8 @@ class GrowthLines:
         """Return all pairs of consecutive edges on grid lines, each with a limit on its length ratio.
 
         Limits are logarithms: `limit` on lines that start at the nodes in the mask `walls` (n,), and where
-        lines cross from block to block; `elsewhere` on other lines. Lines along a wall, in the blocks beside
-        it, may have as large ratios as the wall itself, unless its nodes are in the mask `sliding` (n,).
+        lines cross from block to block; `elsewhere` on other lines. If edges of a wall have larger ratios, so
+        may lines along it in the blocks beside it, except where its nodes are in the mask `sliding` (n,).
         """
         mesh, pairs = layout.mesh, cls.of(layout.mesh, elsewhere)
         nodes = pairs.nodes
@@ -83,16 +83,19 @@ class GrowthLines:
         return type(self)(self.nodes[which], self.limit[which], self.offset[which], self.begins[which])
 
     def growth(self, z: Complexes) -> Floats:
-        """Return log(second / first edge length) + `offset` (k,) of each pair, for complex nodes `z` (n,)."""
+        """Return log(second / first length) + `offset` (k,) of pairs of consecutive edges from nodes `z`."""
         before, after = self.edges(z)
         return np.asarray(log(modulus(after) / modulus(before)) + self.offset)
 
     def edges(self, z: Complexes) -> tuple[Complexes, Complexes]:
-        """Return both edges (k,) of each pair of edges as complex numbers, for complex nodes `z` (n,)."""
+        """Return first and second edges (k,) of k pairs of consecutive edges, from complex nodes `z` (n,)."""
         return z[self.nodes[:, 1]] - z[self.nodes[:, 0]], z[self.nodes[:, 2]] - z[self.begins]
 
     def largest_at(self, mesh: QuadMesh, rows: list[Indices]) -> Floats:
-        """Return the largest |growth| (n,) at nodes; on lines in `rows`, at least that of the first node."""
+        """Return, for each node (n,), the largest |log(length ratio)| of consecutive edges that meet there.
+
+        A node on a line in the tables `rows` (lines, nodes) gets at least the value of the line's first node.
+        """
         growth = np.zeros(len(mesh.nodes))
         np.maximum.at(growth, self.nodes[:, 1], np.abs(self.growth(complex_of(mesh.nodes))))
         for table in rows:

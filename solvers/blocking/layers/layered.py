@@ -66,27 +66,27 @@ def layered(
     SolverError if no blocks are found, NoValidGridError if cells are folded.
     """
     timings = {} if timings is None else timings
-    sheets = () if layout else tuple(k for k in loops if k and has_sharp_edge(domain.loops[k]))
+    sharp = () if layout else tuple(k for k in loops if k and has_sharp_edge(domain.loops[k]))
     while True:
         with stage("layers", timings):
-            rings = [k for k in loops if k not in sheets]
-            walls = WallLayers.of(domain, rings, settings, stretches, sheets)
+            rings = [k for k in loops if k not in sharp]
+            walls = WallLayers.of(domain, rings, settings, stretches, sharp)
         coarse = layout and taken_outside(layout, walls.rest, walls.rings)
         coarse = coarse or found_outside(walls.rest, walls.rings, timings, bool(walls.mirrors))
-        free = tuple(k for k in sheets if walls.is_free(k, coarse.mesh, wake_of(coarse.mesh, k)))
-        if free == sheets:
-            coarse, rows = with_wall_rows(coarse, walls.stretches, sheets, walls.mirrors)
+        free = tuple(k for k in sharp if walls.is_free(k, coarse.mesh, wake_of(coarse.mesh, k)))
+        if free == sharp:
+            coarse, rows = with_wall_rows(coarse, walls.stretches, sharp, walls.mirrors)
             coarse, counts = _optimum(walls, rows, walls.symmetric(coarse), (cells, cell_size), None, timings)
             for _ in range(1, COUNTINGS if rows.loops else COUNTINGS - 1):
                 coarse, counts = _optimum(walls, rows, coarse, (cells, cell_size), counts, timings)
             wakes = rows.wakes(coarse)  # they have moved
             free = tuple(
-                k for k in sheets
+                k for k in sharp
                 if walls.has_room(k, wakes[k], counts.scale) and rows.growth(coarse, k) < BASE_GROWTH
             )  # fmt: skip
-        if free == sheets:
+        if free == sharp:
             break
-        sheets = free
+        sharp = free
     fine = _fine(walls, rows, coarse, counts, timings)
     with stage("layers", timings):
         return _joined(walls, rows, fine)
@@ -219,6 +219,6 @@ def _joined(walls: WallLayers, rows: WallRows, layout: Layout) -> Layout:
     whole = attach(layout, walls.domain, attached)
     whole = replace(whole, mesh=made_symmetric(whole.mesh))
     held = np.zeros(len(whole.mesh.nodes), dtype=bool)
-    own, following = held_nodes(layout, rows, settings, len(walls.sheets))
+    own, following = held_nodes(layout, rows, settings, len(walls.sharp))
     held[: len(mesh.nodes)] = own | mesh.tied
     return finished(whole, settings, held, following)

@@ -48,9 +48,8 @@ def found_outside(
 ) -> Layout:
     """Return the blocks of `rest`, a domain without its layers; loops `fronts` are outer edges of layers.
 
-    If `symmetric`, a symmetric domain gets symmetric blocks.
-
-    Raises SolverError if no blocks are found; InputError if two loops nearly touch.
+    If `symmetric`, a symmetric domain gets symmetric blocks. Raises SolverError if no blocks are found;
+    InputError if two loops nearly touch.
     """
     plain = rest if symmetric and mirrors_of(rest) else replace(rest, loops=tuple(map(_smooth, rest.loops)))
     sizes = feature_sizes(plain)
@@ -66,8 +65,8 @@ def found_outside(
 def taken_outside(layout: Layout, rest: Domain, fronts: Collection[int]) -> Layout:
     """Return `layout` transferred to the domain `rest`, whose loops `fronts` are the outer edges of layers.
 
-    Raises InputError if `layout` was made for layers around a loop that is not in `fronts`, or without layers
-    around a loop in `fronts` that has sharp corners. See `carried_over` for other reasons.
+    Raises InputError if `layout` was made for layers around loops other than `fronts`. Layers
+    around loops without sharp corners may be missing. See `carried_over` for other reasons.
     """
     taken = carried_over(layout, rest)
     places = taken.mesh.places

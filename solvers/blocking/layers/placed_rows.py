@@ -68,18 +68,18 @@ def with_layers(layout: Layout, rows: WallRows, settings: Sequence[LayerSettings
     return replace(layout, mesh=mesh.with_nodes(nodes, arcs))
 
 
-def held_nodes(layout: Layout, rows: WallRows, settings: LayerSettings, sheets: int) -> tuple[Bools, Indices]:
+def held_nodes(layout: Layout, rows: WallRows, settings: LayerSettings, sharp: int) -> tuple[Bools, Indices]:
     """Return a mask (n,) of the fixed nodes in rows of layers, and pairs (k, 2) of nodes that move together.
 
-    Each pair is a wall node and a node of the first cells on the same line. In the first `sheets` rows, which
-    go around sharp edges, and at corners, both nodes are fixed and form no pair.
+    Each pair is a wall node and a node of the first cells on the same line. Such nodes are fixed, instead of
+    being a pair, at corners, at periodic sides, and in the first `sharp` rows, which go around sharp edges.
     """
     mesh, cells = layout.mesh, settings.constant + 1
     held, pairs = np.zeros(len(mesh.nodes), dtype=bool), []
     for row in range(len(rows.loops)):
         for table in rows.columns(layout, row):
             on = mesh.places.loop[table[:, 0]] == rows.loops[row]
-            stays = on & ((mesh.places.cells[table[:, 0]] > 0) | mesh.tied[table[:, 0]] | (row < sheets))
+            stays = on & ((mesh.places.cells[table[:, 0]] > 0) | mesh.tied[table[:, 0]] | (row < sharp))
             held[table[stays, :cells]] = True
             wall = table[on & ~stays, :cells]
             pairs += [np.stack([wall[:, 0], wall[:, k]], axis=1) for k in range(1, cells)]

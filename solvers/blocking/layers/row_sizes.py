@@ -79,11 +79,11 @@ class RowSizes:
         return graded(full, self.arcs, self.loop.length, SLOPE)
 
     def thickness_at(self, arcs: Floats, scale: float, settings: LayerSettings) -> Floats:
-        """Return the thickness (k,) of layers at arc lengths `arcs` (k,); `scale` multiplies cell lengths."""
+        """Return the thickness (k,) of layers at arc lengths `arcs` (k,), interpolated from `thickness`."""
         return np.interp(arcs, self.arcs, self.thickness(scale, settings), period=self.loop.length)
 
     def thickness_behind(self, away: Floats, scale: float, settings: LayerSettings) -> Floats:
-        """Return thicknesses (k,) of layers `away` (k,) behind the edge; `scale` multiplies cell lengths."""
+        """Return the thickness (k,) of layers along a wake, at distances `away` (k,) from the sharp edge."""
         edge = self.thickness_at(self.loop.corner_arcs[:1], scale, settings)
         return edge + SPREAD * away
 

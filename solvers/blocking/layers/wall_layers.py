@@ -57,23 +57,23 @@ class WallLayers:
     rest: Domain  # the remaining domain, with the same indices of loops
     settings: LayerSettings
     stretches: tuple[Stretch, ...] = ()  # parts of loops whose layers are rows of blocks of the layout
-    sheets: tuple[int, ...] = ()  # indices of loops with rows of blocks around them and along their wakes
+    sharp: tuple[int, ...] = ()  # indices of loops with rows of blocks around them and along their wakes
     sizes: Mapping[int, RowSizes] = field(default_factory=dict)
     """Cell sizes at rows of blocks, by the index of the loop."""
 
     @classmethod
     def of(
         cls, domain: Domain, loops: Sequence[int], settings: LayerSettings,
-        stretches: Sequence[Stretch] = (), sheets: Sequence[int] = (),
+        stretches: Sequence[Stretch] = (), sharp: Sequence[int] = (),
     ) -> Self:  # fmt: skip
         """Return the layers of a domain.
 
-        Layers around `loops` (indices) are marched. Others are rows of blocks along `stretches` (parts of
-        loops), and around the loops with the indices `sheets`, which have a sharp edge, and their wakes.
+        Layers around `loops` (indices) are marched. Layers along `stretches` (parts of loops) are rows of
+        blocks. So are those around the loops `sharp` (indices), which have a sharp edge, and their wakes.
         Raises InputError if there is too little room, or if layers fold.
         """
         rings = rings_around(domain, loops, settings)
-        numbers = sorted({*sheets, *(stretch.loop for stretch in stretches)})
+        numbers = sorted({*sharp, *(stretch.loop for stretch in stretches)})
         outer = 0 in rings or 0 in numbers or domain.periodic
         near = None if outer else NearField.of(domain)
         rest = list(domain.loops)
@@ -85,7 +85,7 @@ class WallLayers:
         sizes = {k: RowSizes.of(left, k, [s for s in stretches if s.loop == k], settings) for k in numbers}
         for each in sizes.values():
             each.check_room()
-        return cls(domain, rings, near, left, settings, tuple(stretches), tuple(sheets), sizes)
+        return cls(domain, rings, near, left, settings, tuple(stretches), tuple(sharp), sizes)
 
     @cached_property
     def mirrors(self) -> tuple[Mirror, ...]:
@@ -100,7 +100,7 @@ class WallLayers:
     def of_rows(self) -> tuple[LayerSettings, ...]:
         """Settings of each row of blocks with layers: first those around sharp edges, then the others."""
         loops = self.domain.loops
-        names = [loops[k].names for k in self.sheets] + [s.names(loops[s.loop]) for s in self.stretches]
+        names = [loops[k].names for k in self.sharp] + [s.names(loops[s.loop]) for s in self.stretches]
         return tuple(map(self.settings.at, names))
 
     def symmetric(self, layout: Layout) -> Layout:
@@ -143,8 +143,8 @@ class WallLayers:
     ) -> SizeMetric:
         """Return the target cell sizes outside the layers.
 
-        Next to layers, they are `scale` times the cell lengths along the wall. If `size` is given, it is the
-        largest size, and `scale` has no effect. `wakes` has nodes (k, 2) of wakes, by the index of the loop.
+        Next to layers, they are `scale` times the cell lengths along the wall. If `size`, the largest size,
+        is given, the scale follows from it. `wakes` has nodes (k, 2) of wakes, by the index of the loop.
         """
         scale = 1.0 if size else scale
         parts = [sizes.metric(scale, self.settings) for sizes in self.sizes.values()]
@@ -163,7 +163,7 @@ class WallLayers:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """By loop index: arc lengths whose steps between nodes on outer edges of layers should be even."""
+        """By loop index: arc lengths along which nodes are moved so that steps between them are even."""
         measures = {k: ring.along for k, ring in self.rings.items()}
         if self.near is not None:
             ends = np.array([0.0, self.near.circle.length])

@@ -37,9 +37,9 @@ class WallRows:
     Parameters
     ----------
     loops : for each row, the index of the loop along which it goes.
-    across : (b, 2) for each block, the index of the row that its lines from south to north cross, and of the
-        row that its lines from west to east cross; -1 for none. Refinement does not change these indices.
-    back : (b, 2) whether these lines lead towards the wall.
+    across : (b, 2) for each block, the row (index) whose layers are stacked from south to north, and the row
+        whose layers are stacked from west to east; -1 for none. Refinement does not change these indices.
+    back : (b, 2) whether the wall (or wake) of these rows is on the north side, or on the east side.
     """
 
     loops: tuple[int, ...]
@@ -107,17 +107,18 @@ def wake_of(mesh: QuadMesh, number: int) -> list[int]:
 
 
 def with_wall_rows(
-    layout: Layout, stretches: Sequence[Stretch], sheets: Sequence[int] = (), mirrors: Sequence[Mirror] = ()
+    layout: Layout, stretches: Sequence[Stretch], sharp: Sequence[int] = (), mirrors: Sequence[Mirror] = ()
 ) -> tuple[Layout, WallRows]:
-    """Return the layout with rows of quads added along `stretches` and around `sheets`, and these rows.
+    """Return the layout with rows of quads added along walls, and these rows.
 
-    `stretches` are parts of loops, `sheets` indices of loops with a sharp edge. `mirrors` are mirror lines of
-    the domain. Raises SolverError if the new mesh cannot be divided into blocks.
+    There is one along each part of a loop in `stretches`. Loops in `sharp` (indices) have a sharp edge; one
+    row goes around each of them and its wake. `mirrors` are mirror lines of the domain. Raises SolverError if
+    the new mesh cannot be divided into blocks.
     """
     mesh = layout.mesh
     rungs: list[Edge] = []  # an edge across each row, from wall to front
     fronts: list[list[Edge]] = []
-    for number in sheets:
+    for number in sharp:
         before, wake = len(mesh.quads), wake_of(mesh, number)
         mesh = with_row(mesh, [*wake[:0:-1], *along_wall(mesh, wake[0], wake[0])[:-1], *wake])
         row = mesh.quads[before:].tolist()
@@ -144,7 +145,7 @@ def with_wall_rows(
     on_front = np.zeros(len(mesh.nodes), dtype=bool)
     on_front[[node for front in fronts for edge in front for node in edge]] = True
     back = np.array([[on_front[block[:, 0]].all(), on_front[block[0]].all()] for block in parts.blocks])
-    loops = (*sheets, *(stretch.loop for stretch in stretches))
+    loops = (*sharp, *(stretch.loop for stretch in stretches))
     return replace(layout, mesh=mesh, blocks=parts.blocks), WallRows(loops, rows_across, back)
 
 

@@ -29,10 +29,10 @@ def half_edges(mesh: QuadMesh) -> HalfEdges:
 def with_row(mesh: QuadMesh, path: Sequence[int], *, closed: bool = False, of_wall: bool = False) -> QuadMesh:
     """Return the mesh with a row of quads inserted on the left of a path of nodes.
 
-    The path goes from wall to wall or, if `closed`, from its last node back to the first. New nodes are on
-    the far side of the row. If `of_wall`, they take the places of the path's nodes, which move to the far
-    side. The new quads are the last ones of the mesh; each has two nodes on the path, then two on the far
-    side. If a closed path begins at a corner with a single quad, the last new quad fills this corner.
+    The path goes from wall to wall or, if `closed`, from its last node back to the first. Copies of its nodes
+    become the far side of the row. If `of_wall`, the path is along a wall: then the copies stay on the wall,
+    and the path moves inwards. The new quads are the last ones of the mesh; each begins with its two nodes on
+    the near side. If a closed path begins at a corner with a single quad, the last one fills this corner.
     """
     half, n, count = half_edges(mesh), len(mesh.nodes), len(path)
     new = list(range(n, n + count))
@@ -106,9 +106,10 @@ def _left_of(
 
 
 def corner_row(mesh: QuadMesh, corner: int, farthest: int) -> QuadMesh | None:
-    """Return the mesh with one more row of quads around a corner that has a single quad; None if none fits.
+    """Return the mesh with a new row of quads around a corner that has a single quad; None if none fits.
 
-    The row is `farthest` quads away from the corner, or fewer if irregular nodes are in the way.
+    The row goes from one wall at the corner to the other. It is `farthest` quads away from the corner, or
+    fewer if irregular nodes are in the way.
     """
     for size in range(farthest, 0, -1):
         lattice = _lattice(mesh, corner, size)

@@ -34,7 +34,7 @@ def loops_to_pad(mesh: QuadMesh) -> list[int]:
 
 
 def spans_to_pad(mesh: QuadMesh, spans: Sequence[Span]) -> list[Span]:
-    """Return the `spans` (parts of loops) with a node between their ends at which `wrong_count` is true."""
+    """Return those of `spans` (parts of loops) between whose ends a node has too many or too few quads."""
     places, wrong = mesh.places, wrong_count(mesh)
     return [
         (loop, begin, end)

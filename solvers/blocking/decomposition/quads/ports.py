@@ -33,7 +33,7 @@ class Ports:
 
 
 def ports_of(seamless: SeamlessMap, others: Indices) -> Ports:
-    """Return directions of block edges at the corners, singular vertices and vertices `others` of a map."""
+    """Return directions of block edges at corners, at singular vertices and at the vertices `others` (m,)."""
     cells, around = seamless.boundary_cells, seamless.valence.copy()
     around[: len(cells)] = cells
     corners = np.flatnonzero((seamless.corner_cells > 0) | ((cells != 2) & (cells > 0)))

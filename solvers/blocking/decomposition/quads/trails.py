@@ -21,30 +21,31 @@ def map_tables(seamless: SeamlessMap) -> Tables:
 
 @dataclass(frozen=True, eq=False)
 class Trails:
-    """Lines of constant u or v in a map of a triangulation; each line has a straight piece per triangle."""
+    """Lines of constant u or v in a map of a triangulation to a plane u, v; straight in each triangle."""
 
     first: Indices  # (k + 1,) first piece of each trail
     face: Indices  # (p,) triangle of the piece
     edge: Indices  # (p,) edge of the triangle that contains the piece, at walls; -1 elsewhere
-    length: Floats
-    """(p + k,) length of the trail in the map at the start of each piece, and at the end of the trail."""
+    length: Floats  # (p + k,) length in the map at the start of each piece, and at the end of a trail
     begin: Complexes  # (p,) start in the plane
     end: Complexes  # (p,) end in the plane
     loop: Indices  # (k,) number of the loop, for walls; -1 for rays
-    arc: Floats
-    """(p, 2) arc length on the loop at the start of the piece, and length of the piece; 0 for rays."""
+    arc: Floats  # (p, 2) arc length on the loop at the start of the piece, and length of it; 0 for rays
     vertex: Indices  # (p,) vertex at the start of the piece, at walls; -1 elsewhere
 
     def total(self, trail: int) -> float:
-        """Return the length of line number `trail` in the coordinates u, v of the map."""
+        """Return the length of line number `trail` in the plane u, v to which the triangulation is mapped."""
         return float(self.length[self.first[trail + 1] + trail])
 
     def at_vertex(self, vertex: int) -> tuple[int, float]:
-        """Return a boundary line (index), and its length in u, v from its start to a vertex on it."""
+        """Return the index of the boundary line through a vertex, and its mapped length up to this vertex."""
         return self._on_piece(self.vertex == vertex, 0.0)
 
     def at_edge(self, face: int, edge: int, part: float) -> tuple[int, float]:
-        """Return a boundary line (index), and its length in u, v from the start to `part` of an edge."""
+        """Return the index of the boundary line along an edge, and the line's mapped length up to a point.
+
+        The edge is number `edge` of triangle `face`. The point is at the fraction `part` of the edge.
+        """
         return self._on_piece((self.face == face) & (self.edge == edge), part)
 
     def _on_piece(self, which: Bools, part: float) -> tuple[int, float]:
@@ -74,18 +75,18 @@ class Trails:
         return Trails(*(np.concatenate(pair) for pair in zip(mine, theirs, strict=True)))
 
 
-def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, rays: int) -> Trails:
-    """Return `rays` traced lines as `Trails`; `pieces` (p, 3) and `lines` (p, 5) come from `trace_rays`."""
+def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, count: int) -> Trails:
+    """Return the `Trails` of `count` rays, from the arrays `pieces` and `lines` that `trace_rays` returns."""
     order = np.argsort(pieces[:, 0], kind="stable")
     pieces, lines = pieces[order], lines[order]
-    count = np.bincount(pieces[:, 0], minlength=rays)
-    first = np.append(0, np.cumsum(count)).astype(np.intp)
+    many = np.bincount(pieces[:, 0], minlength=count)
+    first = np.append(0, np.cumsum(many)).astype(np.intp)
     origin, stop = complex_of(lines[:, :2]), complex_of(lines[:, 2:4])
     face = pieces[:, 1]
-    length = np.insert(lines[:, 4], first[1:], 0.0) if rays else np.zeros(0)
+    length = np.insert(lines[:, 4], first[1:], 0.0) if count else np.zeros(0)
     last = first[1:] - 1
-    ran = np.flatnonzero(count)
-    length[(first[1:] + np.arange(rays))[ran]] = (lines[:, 4] + modulus(stop - origin))[last[ran]]
+    ran = np.flatnonzero(many)
+    length[(first[1:] + np.arange(count))[ran]] = (lines[:, 4] + modulus(stop - origin))[last[ran]]
     return Trails(
         first=first,
         face=face,
@@ -93,7 +94,7 @@ def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, rays: int)
         length=length,
         begin=to_plane(seamless, face, origin),
         end=to_plane(seamless, face, stop),
-        loop=np.full(rays, -1, dtype=np.intp),
+        loop=np.full(count, -1, dtype=np.intp),
         arc=np.zeros((len(face), 2)),
         vertex=np.full(len(face), -1, dtype=np.intp),
     )

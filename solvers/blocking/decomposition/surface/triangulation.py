@@ -111,10 +111,8 @@ def triangulate(
 ) -> Triangulation:
     """Return a triangulation of a domain with about `count` nodes, or more if walls need short edges.
 
-    Edges along walls have the lengths of `wall_sizes`. `finer` are points (m, 2) and the edge lengths (m,)
-    around them. The same input and `seed` give bitwise the same result.
-
-    Raises InputError if walls are so close to each other that they cannot be distinguished.
+    `finer` has points (m, 2) and the edge lengths (m,) around them. The same input and `seed` give bitwise
+    the same result. Raises InputError if walls are so close to each other that they cannot be distinguished.
     """
     sizes = wall_sizes(domain, count, finer)
     frame = _Frame(domain)

@@ -36,7 +36,7 @@ def node_images(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> list
 
 
 def agree(images: Images) -> bool:
-    """Return whether `images` in mirrors are consistent: two reflections must be a rotation of the mesh."""
+    """Return whether mirror images of nodes fit together: two successive reflections must be a rotation."""
     if len(images) < 2:
         return True
     (_, one), (_, other) = images[:2]
@@ -51,8 +51,8 @@ def agree(images: Images) -> bool:
 def made_symmetric(mesh: QuadMesh, images: Images | None = None) -> QuadMesh:
     """Return the mesh with each node at the mean of itself and its mirror images.
 
-    `images` are the images of nodes, by default in all mirrors. If those in different mirrors contradict each
-    other (see `agree`), only the first mirror is used. Corners do not move.
+    `images` has the images of the nodes in each mirror, by default in all mirrors of the mesh. Only the first
+    mirror is used if two reflections, one after the other, are not a rotation. Corners do not move.
     """
     images = images_of(mesh) if images is None else images
     if not agree(images):

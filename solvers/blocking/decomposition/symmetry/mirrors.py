@@ -38,7 +38,7 @@ class Mirror:
         return _images(points, self.centre, self.along)
 
     def ahead_and_left(self, points: Floats) -> tuple[Floats, Floats]:
-        """Return the coordinates (...) of points (..., 2) along the line from the centre, and to its left."""
+        """Return two coordinates (...) of points (..., 2): along the line from `centre`, and to its left."""
         return along_and_across(points - self.centre, self.along)
 
 

@@ -63,7 +63,7 @@ class DomainPart:
 
 
 def spans_between(loop: Loop) -> list[Span]:
-    """Return parts of a loop between corners with one cell each; other corners in them have two cells."""
+    """Return the parts of the outer loop whose ends are corners of one cell; corners inside have two."""
     corners = zip(loop.corner_arcs.tolist(), loop.corner_cells.tolist(), strict=True)
     turns = [(arc, cells) for arc, cells in corners if cells != 2]
     pairs = pairwise([*turns, *((arc + loop.length, cells) for arc, cells in turns[:1])])

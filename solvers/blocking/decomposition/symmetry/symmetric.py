@@ -43,10 +43,9 @@ def symmetric_blocks(
 ) -> BaseComplex:  # fmt: skip
     """Return symmetric blocks of the domain of `blocks`, or `blocks` if symmetric blocks are clearly worse.
 
-    The score of symmetric blocks may be worse by `worth`. If `blocks` are symmetric, they are kept, unless
-    the blocks of a part of the domain, with their mirror images, are better and not more numerous. Symmetry
-    about more mirrors is preferred. `find` returns the mesh of a part of the domain. `unsized` returns a mesh
-    without prescribed edge lengths, which is tried last.
+    A lower `score` is better; that of symmetric blocks may be higher by `worth`. If `blocks` are symmetric,
+    they are replaced only by better and not more numerous ones, made by mirroring a part of the domain.
+    `find` returns the mesh of such a part. `unsized` returns a mesh without prescribed lengths, tried last.
     """
     mesh, every = blocks.mesh, mirrors_of(blocks.mesh.domain)
     pair = every[:1] if len(every) % 2 else every[:: max(len(every) // 2, 1)]
