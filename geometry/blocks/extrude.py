@@ -59,8 +59,8 @@ def thickened(
     """Return a planar grid as volumes with the given `nodes`, and with its patches and connections.
 
     `nodes` has an array (ni, nj, nk, 3) of finite nodes for each block. Patches and connections extend over
-    all planes of nodes. `ends` has the name and kind of the patch on the first plane, then on the last. If
-    `ends` is None, the first plane is connected to the last: `motion` moves it there; else both coincide.
+    all planes of nodes. `ends` has the name and kind of the patch on the first plane, then on the last. If it
+    is None, these planes are connected: `motion` moves the first plane onto the last; else they coincide.
 
     Raises InputError: blocks that are not planar; nodes that differ where blocks are connected.
     """

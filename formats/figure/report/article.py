@@ -56,7 +56,7 @@ def size_words(report: QualityReport) -> str:
 
 
 def passed(report: QualityReport, gates: Sequence[Gate]) -> bool:
-    """Return whether no cell is folded and the grid meets `gates` and the limits of its quality profile."""
+    """Return whether no cell is folded, and the grid passes all `gates` and its quality profile."""
     return not report.broken(gates) and not report.quality.folded
 
 
