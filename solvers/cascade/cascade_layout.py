@@ -187,7 +187,7 @@ def attached_cells(
     """Return the number of cells in the layers, and in the straight rows that end at inlet and outlet.
 
     `counts` are the cells along the edges of each chord (set of opposite edges). `layers` replaces the number
-    of layers. `longest` has lengths for the keys `INLET` and `OUTLET`; shorter rows are counted as so long.
+    of layers. `longest` has lengths, keys `INLET` and `OUTLET`, that replace smaller lengths of rows.
     """
     along = chords.along_loops(counts).tolist()
     total = along[BLADE] * (cascade.rows_of_layers if layers is None else layers)

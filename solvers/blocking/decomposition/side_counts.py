@@ -66,8 +66,8 @@ def suited(
 
     Counts are at least `least`, multiples of `multiple`, and equal on both sides of periodic pairs. `fixed`
     prescribes the counts of some chords, by index. If `named`, a side for which the domain prescribes n cells
-    gets about n * `multiple` / `finer`: later, all counts are multiplied by `finer`, and n is the number in a
-    grid that is coarser than the final one by `multiple`. Raises InputError if given counts contradict each
+    gets about n * `multiple` / `finer`. A later refinement multiplies all counts by `finer`; n applies to a
+    grid that is coarser than its result by `multiple`. Raises InputError if given counts contradict each
     other or are too small; SolverError if no counts are equal along periodic sides.
     """
     sums, alike = sums_of(chords) if named else {}, _alike(chords)

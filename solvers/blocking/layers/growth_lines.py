@@ -51,7 +51,7 @@ class GrowthLines:
 
         Limits are logarithms: `limit` on lines that start at the nodes in the mask `walls` (n,), and where
         lines cross from block to block; `elsewhere` on other lines. If edges of a wall have larger ratios, so
-        may lines along it in the blocks beside it, except where its nodes are in the mask `sliding` (n,).
+        may lines along it in the blocks beside it, except where wall nodes are in the mask `sliding` (n,).
         """
         mesh, pairs = layout.mesh, cls.of(layout.mesh, elsewhere)
         nodes = pairs.nodes

@@ -59,7 +59,7 @@ def ring_rows(
 
 
 def heights_inside(layout: Layout, loop: int) -> Floats:
-    """Return the lengths (k,) of the edges that lead from a loop inwards, in the order of its nodes."""
+    """Return the lengths (k,) of the edges from a loop into the domain, in the order of its nodes."""
     mesh, height = layout.mesh, np.zeros(len(layout.mesh.nodes))
     for table in layout.beside(mesh.places.loop == loop):
         side = table[:, 0]

@@ -65,8 +65,8 @@ def found_outside(
 def taken_outside(layout: Layout, rest: Domain, fronts: Collection[int]) -> Layout:
     """Return `layout` transferred to the domain `rest`, whose loops `fronts` are the outer edges of layers.
 
-    Raises InputError if `layout` was made for layers around loops other than `fronts`. Layers
-    around loops without sharp corners may be missing. See `carried_over` for other reasons.
+    Raises InputError if `layout` was made for layers around loops other than `fronts`. Layers around loops
+    without sharp corners may be missing in it. See `carried_over` for other reasons.
     """
     taken = carried_over(layout, rest)
     places = taken.mesh.places

@@ -78,7 +78,7 @@ class Ring:
 
     @cached_property
     def along(self) -> Measures:
-        """Lengths along outer edge, wall and the row of nodes next to it, by position on the outer edge."""
+        """Lengths along outer edge, wall, and nodes next to the wall, by position on the outer edge."""
         n = len(self.arcs)
         index = np.arange(FINER * n + 1) / FINER
         knots = np.append(self.front.curve.knots, self.front.length)
@@ -209,7 +209,7 @@ def _ring(loop: Loop, arcs: Floats, levels: Floats) -> Ring:
 def column_weights(index: Floats, low: Indices, high: Indices) -> tuple[Floats, Indices]:
     """Return weights (k, 4) of four neighbouring columns of nodes, and the index (k,) of the first of them.
 
-    They interpolate at positions `index` (k,), counted in columns, from columns `low` to `high` (k,) only.
+    They interpolate at positions `index` (k,), counted in columns, and use only columns `low` to `high` (k,).
     """
     first = np.clip(index.astype(np.intp) - 1, low, np.maximum(high - 3, low))
     width = np.minimum(high - first, 3)

@@ -69,8 +69,8 @@ class WallLayers:
         """Return the layers of a domain.
 
         Layers around `loops` (indices) are marched. Layers along `stretches` (parts of loops) are rows of
-        blocks. So are those around the loops `sharp` (indices), which have a sharp edge, and their wakes.
-        Raises InputError if there is too little room, or if layers fold.
+        blocks. So are those around the loops `sharp` (indices) and their wakes; these loops have a sharp
+        edge. Raises InputError if there is too little room, or if layers fold.
         """
         rings = rings_around(domain, loops, settings)
         numbers = sorted({*sharp, *(stretch.loop for stretch in stretches)})

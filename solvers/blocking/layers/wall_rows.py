@@ -39,7 +39,7 @@ class WallRows:
     loops : for each row, the index of the loop along which it goes.
     across : (b, 2) for each block, the row (index) whose layers are stacked from south to north, and the row
         whose layers are stacked from west to east; -1 for none. Refinement does not change these indices.
-    back : (b, 2) whether the wall (or wake) of these rows is on the north side, or on the east side.
+    back : (b, 2) whether the wall (or wake) of these rows is north, or east, of the block.
     """
 
     loops: tuple[int, ...]

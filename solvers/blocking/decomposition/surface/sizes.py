@@ -65,9 +65,9 @@ def wall_sizes(domain: Domain, count: int, finer: tuple[Floats, Floats] | None =
         h = max(min(h0, piece / 4, gap / 3.5, 0.45 radius), min(h0 / 25, loop / 400))
 
     Here h0 is the edge length if `count` nodes are spread evenly, piece the length of a wall between two
-    corners, gap the distance to the wall in front, radius that of curvature, and loop the length of the loop.
-    `finer` has further points (m, 2), and the greatest lengths (m,) there. Lengths at two points differ by at
-    most 0.35 of their distance.
+    corners, gap the distance to the wall in front, radius the radius of curvature, and loop the length of the
+    loop. `finer` has further points (m, 2), and the greatest lengths (m,) there. Lengths at two points differ
+    by at most 0.35 of their distance.
     """
     largest = usual_size(domain.area, count)
     samples = [_sample(loop, largest) for loop in domain.loops]
