@@ -46,8 +46,8 @@ solvers get the same boundary nodes.
 
 - *distance*: largest distance between a node of `meshonet.layer` and the same node of the compiled solver,
   divided by the largest extent of the grid.
-- *folded*: number of grids of `meshonet.layer` with folded cells. *folded in torch only*: number of these
-  grids for whose shapes the compiled solver's grids are not folded.
+- *folded*: number of grids of `meshonet.layer` with folded cells. *folded in torch only*: number of shapes
+  for which `meshonet.layer` folds cells and the compiled solver does not.
 - *CPU ms*: CPU time to compute a grid, in milliseconds.
 - *gradient*: CPU time to differentiate a function of the grid by the boundary nodes, divided by *CPU ms*.
 

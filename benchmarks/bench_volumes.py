@@ -48,8 +48,8 @@ copy the array of nodes, for comparison.
 
 QUALITY = """## Quality
 
-Each domain has random corners and random curved faces; each grid has 33³ nodes. Domains whose faces have no
-valid grid are left out.
+Each domain has random corners and random curved faces; each grid has 33³ nodes. Domains whose face nodes
+allow no valid grid are left out.
 
 - *valid grids*: grids in which all corner Jacobians are positive.
 - *scaled Jacobian*: smallest scaled Jacobian of the cell corners of a grid, median over the domains.

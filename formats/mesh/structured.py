@@ -81,7 +81,7 @@ def grids_of_file(
 
     Blocks that touch form one grid, and so do all surface patches. A single grid is called `name`. Of several
     grids, one that is a single named block has the block's name, others have `name` with a number. Unnamed
-    outer edges of planar blocks get names. Raises InputError: no cells; unusable nodes; interfaces with gaps.
+    outer edges of planar blocks get names. Raises InputError: no cells, unusable nodes, unmatched interfaces.
     """
     if blocks:
         read = lattices([block.coordinates for block in blocks], [block.place for block in blocks])
