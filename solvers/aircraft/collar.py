@@ -38,7 +38,7 @@ Within: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 
 @dataclass(frozen=True)
 class Rectangle:
-    """A rectangle that encloses a wing's section: limits along the body, and arc lengths around the body."""
+    """A rectangle around a wing's section: `front` to `back` along the body, `low` to `high` around it."""
 
     front: float
     back: float
@@ -64,11 +64,11 @@ def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
 
 
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
-    """Return two numbers that say where, on a wing's section, lines to the corners of `box` begin.
+    """Return where, on a wing's section, grid lines to the corners of the rectangle `box` begin.
 
-    Lines to the rear corners begin as many nodes away from the middle of the trailing edge as the first says.
-    Lines to the front corners begin as many nodes away from the nose as the second says. Both are at least
-    `fewest`. Cells on both sides of a corner are similarly long. `root` (n, 2) is the section.
+    The first number counts nodes from the middle of the trailing edge: there, lines to the rear corners
+    begin. The second counts nodes from the nose: there, lines to the front corners begin. Both are at least
+    `fewest`. `root` (n, 2) are the nodes of the section: lengths along and around the body.
     """
     normals, half = _normals(root), (len(root) - 1) // 2
     tried = np.arange(fewest, half // 3 + 1)
@@ -89,16 +89,16 @@ def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
 
 
 def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]:
-    """Return cell lengths on the rear and front side of `box`; half of each side has `corners` cells."""
+    """Return cell lengths on rear and front side of `box`; `corners` are numbers of cells on half of each."""
     edge, nose = corners
     return (box.high - box.low) / (2 * edge), (box.high - box.low) / (2 * nose)
 
 
 def outer_loop(root: Floats, box: Rectangle, corners: tuple[int, int]) -> Floats:
-    """Return nodes (n, 2) on the rectangle `box`, one for each node `root` (n, 2) of a wing's section in it.
+    """Return n nodes on the rectangle `box`, one for each of the n nodes `root` of a wing's section.
 
-    Coordinates are along and around the body. The first half of `root` runs from the middle of the trailing
-    edge along the upper side to the nose. For `corners` see `corner_nodes`.
+    Nodes are (n, 2): lengths along and around the body. The first half of `root` runs from the middle of the
+    trailing edge along the upper side to the nose. For `corners` see `corner_nodes`.
     """
     half = (len(root) - 1) // 2
     edge, nose = corners

@@ -55,7 +55,7 @@ class Hole:
 
     @property
     def bands(self) -> tuple[float, float]:
-        """Circumferential lengths left for cells below and above the rectangle around the wing's section."""
+        """Widths, measured around the body, of the space for cells below the rectangle `box` and above it."""
         bottom, top = (theta * float(self.scale[1]) for theta in (self.below, self.within[1][1]))
         if self.fin:
             top = self.box.high + self.box.low - bottom
@@ -64,7 +64,7 @@ class Hole:
 
 @dataclass(frozen=True, eq=False)
 class CollarPlan:
-    """Numbers of cells of a collar (the cells around a wing's section), the same on all levels."""
+    """Numbers of cells in the ring around a wing, the same on all of the nested surfaces around a body."""
 
     edge: int  # cells from the middle of the collar's rear side to each of its corners
     nose: int  # the same on the front side
@@ -78,10 +78,10 @@ class CollarPlan:
 
 
 def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
-    """Return at which nodes of a wing's section the grid lines to corners of the rectangle around it begin.
+    """Return where, on a wing's section, grid lines to the corners of the rectangle around it begin.
 
-    Nodes are counted from the trailing edge for rear corners, and from the nose for front corners. Both
-    numbers are means over the sections `holes`.
+    The first number counts nodes from the trailing edge, for the rear corners; the second counts nodes from
+    the nose, for the front corners. Both are means over the sections `holes`.
     """
     corners = [corner_nodes(hole.plane, hole.box, _CORNER) for hole in holes]
     edge, nose = (round(sum(each) / len(corners)) for each in zip(*corners, strict=True))
@@ -91,9 +91,10 @@ def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
 def planned_collar(
     holes: Sequence[Hole], corners: tuple[int, int], first: float, growth: float
 ) -> "tuple[CollarPlan, list[CollarLevel]]":
-    """Return numbers of cells, equal for the grids (collars) around all sections of a wing, and these grids.
+    """Return the numbers of cells in a ring of cells around a wing, and this ring for each section.
 
-    `holes` are the sections of the wing from the root on. `corners` is a result of `planned_corners`.
+    `holes` are the sections of the wing from the root on. `corners` is a result of `planned_corners`. Cells
+    at the wing are `first` high and grow by at most `growth`.
     """
     edge, nose = corners
     plan = CollarPlan(edge, nose, 4, FEWEST, FEWEST, first)
@@ -118,7 +119,7 @@ def planned_collar(
 
 @dataclass(frozen=True, eq=False)
 class CollarLevel:
-    """A collar: a ring of cells around a wing's section, both on a surface that encloses the body."""
+    """A collar: the ring of cells around a wing's section, in one of the nested surfaces around a body."""
 
     plan: CollarPlan  # numbers of cells
     hole: Hole  # the section
@@ -128,7 +129,7 @@ class CollarLevel:
 
     @classmethod
     def of(cls, plan: CollarPlan, hole: Hole) -> "CollarLevel":
-        """Return the collar, the cells around a wing's section `hole`, with numbers of cells from `plan`."""
+        """Return the ring of cells around the wing's section in `hole`, with numbers of cells from `plan`."""
         plane, box = hole.plane, hole.box
         edge, nose, half = plan.edge, plan.nose, (len(plane) - 1) // 2
         outer = outer_loop(plane, box, (edge, nose))
@@ -174,7 +175,7 @@ class CollarLevel:
 
     @cached_property
     def beside(self) -> tuple[float, float]:
-        """Circumferential lengths of the first cells below and above the collar (the cells around a wing)."""
+        """Lengths, around the body, of the cells just below and just above the ring of cells at a wing."""
         outer, half = self.ring[:, -1, 1], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
         corners = (half + nose, len(outer) - 1 - edge), (half - nose, edge)
@@ -216,7 +217,7 @@ class CollarLevel:
 
     @property
     def long_sides(self) -> tuple[Floats, Floats]:
-        """Positions s along the body, descending, of nodes on the collar's lower and on its upper edge."""
+        """Coordinates s, along the body, of nodes on the ring's lower and upper edge, from rear to front."""
         s, half = self.ring[:, -1, 0] / self.hole.scale[0], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
         return s[half + nose : 2 * half - edge + 1][::-1], s[edge : half - nose + 1]

@@ -65,7 +65,7 @@ class ColumnPlan:
 
     @property
     def beside(self) -> tuple[int, int]:
-        """Numbers of cells, from bottom to top, on front and back of the blocks around wing and fin."""
+        """Total number of cells on the fronts of the blocks around wing and fin, and on their rears."""
         shares = [1 if self.fin and each is self.collars[-1] else 2 for each in self.collars]
         before = sum(n * each.nose for n, each in zip(shares, self.collars, strict=True))
         return before, sum(n * each.edge for n, each in zip(shares, self.collars, strict=True))
@@ -84,7 +84,7 @@ class ColumnPlan:
         return replace(self, collars=(replace(first, low=low, top=top), *fins))
 
     def evened(self, widest: float) -> ColumnPlan:
-        """Return the plan with `widest`, a limit on cell sizes around a wing or fin (see `CollarPlan`)."""
+        """Return a plan that limits cells above and below wing and fin to `widest` times their mean."""
         return replace(self, collars=tuple(replace(each, widest=widest) for each in self.collars))
 
 
@@ -93,8 +93,8 @@ def planned_column(
 ) -> tuple[ColumnPlan, list[ColumnLevel]]:
     """Return numbers of cells for patches at a wing, a fin or both, and the patches on each surface.
 
-    The surfaces are nested around the body. `holes` has an item for the wing, one for the fin, or both
-    in this order. An item has one section in each surface.
+    The surfaces are nested around the body. ``holes[k]`` are the sections of a wing, or of a fin, on these
+    surfaces. If there are both, the wing is the first.
     """
     corners = planned_corners([hole for each in holes for hole in each])
     collars, levels = zip(*(planned_collar(each, corners, first, growth) for each in holes), strict=True)
@@ -127,14 +127,14 @@ class ColumnLevel:
         return cls(plan, tuple(levels))
 
     def with_counts(self, plan: ColumnPlan) -> ColumnLevel:
-        """Return the patches with cell counts from `plan` below and above the cells around wing and fin."""
+        """Return a copy with numbers of cells from `plan`; the cells around wing and fin do not change."""
         levels = (replace(each, plan=counts) for each, counts in zip(self.levels, plan.collars, strict=True))
         return replace(self, plan=plan, levels=tuple(levels))
 
     def beside_fin(self, fin: ColumnLevel) -> ColumnLevel:
-        """Return the patches with another zeta, the coordinate away from the body, at their upper edge.
+        """Return the patches (of a wing) with their upper edge adapted to a `fin` beside them.
 
-        It is the mean of zeta here and at the neighbouring `fin`.
+        There zeta, the coordinate away from the body, is the mean of the values at the wing and at the fin.
         """
         zeta = self.zeta
         return replace(self, crown=zeta + 0.5 * (fin.levels[-1].hole.zeta - zeta))
@@ -142,8 +142,8 @@ class ColumnLevel:
     def beside_wing(self, wing: ColumnLevel, side: Side) -> ColumnLevel:
         """Return the patches of a fin, with nodes more similar to those at a neighbouring `wing`.
 
-        Below the fin, nodes move around the body. At the bottom of the body, they move towards the body or
-        away from it. `side` is the edge of the wing's patches that is next to the fin.
+        Below the fin, nodes get other angles around the body. Near the bottom of the body they also get
+        another zeta (the coordinate away from it). `side` is the edge of the wing's patches next to the fin.
         """
         own, others = self.low, side[0][: len(self.low), 1]
         keel = self.zeta + _FOLLOWING * (wing.zeta - self.zeta)
@@ -160,7 +160,7 @@ class ColumnLevel:
         return self.levels[0].low_and_top[0] if self.below is None else self.below
 
     def above(self) -> tuple[float, tuple[float, float]]:
-        """Return lengths around the body: of the gap between wing's and fin's cells, and of its end cells."""
+        """Return the distance between wing and fin cells, and lengths of the first and last cell there."""
         wing, fin = self.levels
         low, high = self._gap
         rho = 0.5 * float(wing.hole.scale[1] + fin.hole.scale[1])
@@ -185,7 +185,7 @@ class ColumnLevel:
 
     @property
     def sides(self) -> tuple[Side, Side]:
-        """Front and back edge of the patches: nodes (n, 3) from the keel up, lengths (n,) of cells there."""
+        """Front and rear edge of the patches: nodes (n, 3) from bottom to top, cell lengths (n,) along s."""
         return self._side(0), self._side(1)
 
     def _side(self, which: int) -> Side:

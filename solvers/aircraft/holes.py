@@ -91,10 +91,11 @@ def _room(before: _Along, after: _Along, clear: float = _CLEAR) -> tuple[Floats,
 def holes_of(
     space: BodyMap, columns: Sequence[Sequence[WingLines]], sections: Sequence[Sequence[Floats]]
 ) -> tuple[tuple[tuple[Hole, ...], ...], ...]:
-    """Return the sections of wings on k surfaces around the body, by column, by wing and by surface.
+    """Return the sections of wings on k surfaces around the body, nested as [group][wing][surface].
 
-    The groups of wings, `columns`, go from nose to tail. `sections` has k x n nodes (k, n, 3) for each wing.
-    Raises InputError if a section meets the plane of symmetry, or if wings are too close to each other.
+    `columns` are groups of wings, from nose to tail: a wing, a fin, or a wing and the fin above it. For each
+    wing, `sections` has its nodes (k, n, 3), n on each surface. Raises InputError if a section meets the
+    plane of symmetry, or if wings are too close to each other.
     """
     for column, members in zip(columns, sections, strict=True):
         for wing, each in zip(column, members, strict=True):

@@ -32,7 +32,7 @@ def lines_between(
 def ways_between(
     points: Points, begin: Floats, end: Floats, sizes: tuple[Floats, Floats]
 ) -> tuple[Floats, tuple[Floats, Floats]]:
-    """Return lengths (n,) of the lines of `lines_between`, and of their first and last cells, in x, y, z."""
+    """Return lengths (n,) in space of the lines of `lines_between`, and of their first and last cells."""
     _, arcs, ends = _measured(points, begin, end, sizes)
     return arcs[:, -1], ends
 

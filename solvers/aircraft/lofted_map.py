@@ -78,7 +78,10 @@ class LoftedMap(BodyMap):
         return np.asarray(norms(self._around(places)))
 
     def steepness(self, places: Floats) -> Floats:
-        """Return angles (...) in radians from lines around the body to the z axis, at s, theta, zeta."""
+        """Return angles (...), in radians, between the z axis and the direction around the body at `places`.
+
+        `places` (..., 3) are s, theta, zeta: along, around and away from the body.
+        """
         around = np.abs(self._around(places))
         return np.asarray(arctan2(around[..., 1], around[..., 2]))
 

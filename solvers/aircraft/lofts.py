@@ -39,9 +39,10 @@ def section_loft(stack: Stack, unit: Floats) -> Loft:
 
 
 def fin_loft(fin: Fin, unit: Floats) -> Loft:
-    """Return spanwise lines (along y) on the half z >= 0 of a fin, from its leading to its trailing edge.
+    """Return lines along the span of an upright fin, on its side z >= 0; the span is along y.
 
-    `unit` (sections, n, 2) are nodes around its sections, scaled to chord 1.
+    The first line is the leading edge, the last the trailing edge. `unit` (sections, n, 2) are nodes around
+    the fin's sections, scaled to chord 1.
     """
     half = (unit.shape[1] - 1) // 2
     upper, lower = unit[:, half::-1], unit[:, half:]

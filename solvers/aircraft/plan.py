@@ -49,10 +49,10 @@ class AircraftPlan:
 
     @classmethod
     def of(cls, aircraft: Aircraft, request: AircraftRequest, space: BodyMap, around: int) -> Self:
-        """Return the plan with `around` nodes around each wing; the default growth ratio is `GROWTHS[0]`.
+        """Return the plan of a grid with `around` nodes around each wing.
 
-        Raises InputError if a wing does not begin inside the body or does not leave it, if wings are too
-        close to each other, or if a root is too close to keel or crown.
+        Cells grow by `GROWTHS[0]` if `request` has no growth ratio. Raises InputError for a wing that does
+        not begin inside the body, does not leave it, or is too close to another wing, to keel or to crown.
         """
         chord = aircraft.wing.chord
         first, growth = request.height() * chord, request.growth or GROWTHS[0]
@@ -106,9 +106,9 @@ class AircraftPlan:
 def plan_of(
     aircraft: Aircraft, request: AircraftRequest, space: BodyMap
 ) -> tuple[AircraftPlan, tuple[str, ...]]:
-    """Return a plan with the requested number of cells, or of nodes around wings; also return notes.
+    """Return the plan of a grid (numbers of cells, shapes of wings), and notes for the user.
 
-    Raises InputError as `AircraftPlan.of`.
+    Cells, or nodes around wings, are about as many as requested. Raises InputError as `AircraftPlan.of`.
     """
     if request.cells is None:
         plan = AircraftPlan.of(aircraft, request, space, request.surface.around)

@@ -38,8 +38,9 @@ def arcs_beyond(lengths: Floats, first: Floats, cells: int) -> Floats:
 def last_cells(points: Floats, section: Indices, even: Floats, first: float, growth: float) -> Floats:
     """Return spanwise heights (p,) of the cells that end at a surface of nodes through the wing tip.
 
-    `points` (p, 3) are the nodes of this surface. Heights are `first` at those with indices `section`, which
-    are on the wing. Farther away they increase up to `even` (p,), the faster the larger `growth` is.
+    `points` (p, 3) are the nodes of this surface; those with indices `section` are on the wing. There, cells
+    are `first` high. Away from the wing the height increases to sqrt(first * even) within a distance that is
+    shorter if the growth ratio `growth` is larger. `even` (p,) are the heights of equal cells.
     """
     wing = points[section]
     away = np.array([norms(wing - point).min() for point in points])

@@ -17,12 +17,12 @@ _OBLIQUE = 0.4  # largest cosine between the level and the mean direction of lin
 
 
 def off_body(points: Floats, above: Floats, rings: Sequence[Indices], first: float) -> Floats:
-    """Return `points` (k, p, 3) of p lines on k levels, moved so that lines leave the body along normals.
+    """Return `points` (k, p, 3), k on each of p lines, moved so that lines leave the body along normals.
 
     Parameters
     ----------
     above : (p, 3) points at the distance `first` from the starts of the lines, along normals of the body.
-    rings : for each wing, indices (n, m) of lines that start around it: n around it, m away from it.
+    rings : for each wing, indices (n, m) of lines whose starts on the body are m loops of n nodes around it.
     """
     turned = (above - points[1]) / first
     turned[points[0, :, 2] == 0.0, 2] = 0.0
@@ -42,7 +42,7 @@ def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Fl
     """Return `points` (k, p, 3), moved so that grid lines start from a wing at right angles to its span.
 
     k points are on each of p spanwise lines. `ring` (n, m) are indices of these lines: n around the wing, m
-    outwards. If `closed`, the last of the n repeats the first. Cells at the wing are `first` high.
+    off its surface. If `closed`, the last of the n repeats the first. Cells at the wing are `first` high.
     """
     lines = np.moveaxis(points[:, ring], 2, 0)  # (m, k, n, 3), from the wing outwards
     wall, away = lines[0], (lines[1] - lines[0]) / first

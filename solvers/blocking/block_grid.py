@@ -43,8 +43,8 @@ def fine_layout(
 ) -> Layout:
     """Return a block layout, refined to the requested number of cells, with optimised nodes.
 
-    Give `cells` or `cell_size`, an edge length; the default is `CELLS` cells. Each cell is then divided into
-    four, `halved` times, so that coarser grids are nested. Raises NoValidGridError if cells stay folded.
+    Give the number of `cells`, or `cell_size`, an edge length; the default is `CELLS` cells. After that, each
+    of these cells is divided into four, `halved` times. Raises NoValidGridError if cells stay folded.
     """
     timings = {} if timings is None else timings
     area = layout.mesh.domain.area

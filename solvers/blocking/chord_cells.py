@@ -42,9 +42,9 @@ class WantedCounts:
 def metric_places(chords: Chords, counts: Indices, metric: SizeMetric) -> list[Floats]:
     """Return, for each edge of the blocks, the positions (cells + 1,) of its new nodes.
 
-    A position is a fractional index: 2.5 is midway between the old nodes 2 and 3. `counts` (chords,) are the
-    new numbers of cells of chords (rows of blocks). Cell lengths follow the target sizes `metric`. Positions
-    on opposite edges of a block are averaged.
+    A position is a fractional index: 2.5 is midway between the old nodes 2 and 3. Opposite edges of blocks
+    belong to the same chord and get equal numbers of cells, `counts` (chords,). Cell lengths follow the
+    target sizes `metric`. Positions on opposite edges of a block are averaged.
     """
     nodes = chords.layout.mesh.nodes
     cells = counts[chords.chord]

@@ -179,10 +179,7 @@ class _FacePlan:
 
 
 def _planned(model: CadModel) -> tuple[_FacePlan, ...]:
-    """Return the division of each face into patches.
-
-    Raises InputError, with number, sides and place of a face: it cannot become patches.
-    """
+    """Return the division of each face into patches. Raises InputError for a face that cannot be divided."""
     plans, problems = [], []
     for number, face in enumerate(model.faces, 1):
         plan = _plan(model, face)

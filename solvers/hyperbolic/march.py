@@ -122,10 +122,7 @@ def marched(front: Front, rows: int, layers: MarchLayers) -> Floats:
 
 
 def _unfolded(front: Front, cells: int, layers: MarchLayers) -> Floats:
-    """Return the nodes (ni, cells + 1, 2) of the attempt with the fewest folded cells.
-
-    Raises SolverError: no attempt gave finite nodes.
-    """
+    """Return nodes (ni, cells + 1, 2) of the attempt with the fewest folded cells, or raise SolverError."""
     best, least = None, math.inf
     attempts: Sequence[MarchSettings] = SHARP_ATTEMPTS if front.edge else ATTEMPTS
     if front.narrow:

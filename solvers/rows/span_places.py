@@ -117,10 +117,7 @@ def _widened(nodes: Indices, corners: Floats, count: int) -> Indices:
 
 
 def _opposite_nodes(mirrored: Floats, corners: Floats) -> Indices:
-    """Return which of symmetric places (k,) are nearest to `corners` (c,).
-
-    Corners within a step of being opposite get opposite nodes.
-    """
+    """Return which of symmetric places (k,) are nearest to `corners` (c,), opposite ones if possible."""
     nodes = corner_nodes(mirrored, corners)
     lead = int(np.abs(wrapped(mirrored)).argmin())
     upper, lower = np.flatnonzero(corners < 0.5), np.flatnonzero(corners > 0.5)
@@ -133,10 +130,7 @@ def _opposite_nodes(mirrored: Floats, corners: Floats) -> Indices:
 
 
 def _drawn(places: Floats, nodes: Indices, corners: Floats) -> Floats:
-    """Return places (k,) with `nodes` (c,) at `corners` (c,), and those between drawn along.
-
-    An edge without corners stays.
-    """
+    """Return places (k,) with `nodes` (c,) at `corners` (c,), and those between drawn along."""
     if not len(nodes):
         return places
     move = wrapped(corners - places[nodes])
@@ -205,10 +199,7 @@ def _fitted(parts: Floats, missing: Floats, weights: Floats) -> Floats:
 
 
 def _moved(places: Floats, pairs: Indices, moves: Floats, fixed: Bools) -> Floats:
-    """Return places (k,), `pairs` (p, 2) moved apart by `moves` (p,), those between drawn along.
-
-    The one farther from an edge moves more.
-    """
+    """Return places (k,), `pairs` (p, 2) moved apart by `moves` (p,), those between drawn along."""
     room = 0.25 - np.abs(0.25 - np.abs(wrapped(places[pairs])))
     share = room / np.maximum(room.sum(axis=1, keepdims=True), _TINY)
     stay = np.concatenate([[0.0, 0.5], places[fixed]])

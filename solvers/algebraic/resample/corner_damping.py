@@ -44,9 +44,9 @@ def fading(m: int, n: int) -> Floats:
 
 @lru_cache(maxsize=16)
 def cubic(n: int, count: int) -> Floats:
-    """Return the matrix (count, n) from a spline's second derivatives to spline minus linear interpolant.
+    """Return the matrix (count, n) that gives the difference of a spline from linear interpolation.
 
-    The derivatives are at n uniform knots, the results at `count` uniform places.
+    It multiplies the spline's second derivatives at n uniform knots; the result is at `count` uniform places.
     """
     return _weighted(n, count, 2)
 

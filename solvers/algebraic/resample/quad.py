@@ -43,9 +43,9 @@ def refine_quad(coarse: Floats, sides: Sides) -> Floats:
 def mended(coarse: Floats, sides: Sequence[Floats], nodes: Floats) -> Straight | None:
     """Interpolate `nodes` (2, ni, nj) anew around folded cells, in place: linearly instead of with splines.
 
-    They come from a `coarse` grid (2, m, n) and from the `sides` (see `Sides`). Return a mask
-    (m, n) that is 1 at the coarse nodes with linear interpolation. If `coarse` has folded cells, or if this
-    does not reduce the number of folded cells, `nodes` stay unchanged and None is returned.
+    `nodes` were interpolated from a `coarse` grid (2, m, n) and from `sides` (see `Sides`). Return a mask
+    (m, n) that is 1 at the coarse nodes with linear interpolation. If `coarse` has folded cells, or if linear
+    interpolation does not reduce their number in `nodes`, these stay unchanged and None is returned.
     """
     if count_folded(coarse.transpose(1, 2, 0)):
         return None

@@ -120,6 +120,9 @@ class Parametrisation:
         return np.asarray(coords[0] + 1j * coords[1])
 
     def jacobians(self, coords: Complexes) -> Floats:
-        """Return Jacobians (t,) of the map, divided by targets; `coords` (t, 3) are u + i v at corners."""
+        """Return the map's Jacobian in each of t triangles, divided by that of the prescribed gradients.
+
+        `coords` (t, 3) are u + i v at the corners of the triangles.
+        """
         first, second = coords[:, 1] - coords[:, 0], coords[:, 2] - coords[:, 0]
         return np.asarray(times(np.conj(first), second).imag / (2.0 * self.surface.areas * self._wanted))

@@ -30,9 +30,9 @@ class WallDirections:
 def wall_directions(surface: Triangulation) -> WallDirections:
     """Return the directions that the cross field should have along the walls of a surface.
 
-    At a corner of alpha degrees where k cells meet, the directions of the two walls are rotated towards or
-    away from each other, each by 45 k - alpha/2 degrees, to give the same cross. The rotation decreases with
-    the distance from the corner. At other vertices the direction is the mean of those of the two edges.
+    At a corner where k cells meet, the directions of the two walls are rotated by equal angles, in opposite
+    senses, until there are 90 k degrees between them. The rotation decreases with the distance from the
+    corner. At other vertices the direction is the mean of those of the two edges.
     """
     triangle, edge = surface.walls
     start = surface.triangles[triangle, edge]

@@ -29,10 +29,11 @@ def half_edges(mesh: QuadMesh) -> HalfEdges:
 def with_row(mesh: QuadMesh, path: Sequence[int], *, closed: bool = False, of_wall: bool = False) -> QuadMesh:
     """Return the mesh with a row of quads inserted on the left of a path of nodes.
 
-    The path goes from wall to wall or, if `closed`, from its last node back to the first. Copies of its nodes
-    become the far side of the row. If `of_wall`, the path is along a wall: then the copies stay on the wall,
-    and the path moves inwards. The new quads are the last ones of the mesh; each begins with its two nodes on
-    the near side. If a closed path begins at a corner with a single quad, the last one fills this corner.
+    The path goes from wall to wall or, if `closed`, from its last node back to the first. Its nodes
+    are the right side of the row; copies of them, moved to the left, are the left side. If `of_wall`, the
+    path is along a wall: then the copies stay on the wall as the right side, and the nodes of the path move
+    to the left. The new quads are the last ones of the mesh; each begins with its two nodes on the right
+    side. If a closed path begins at a corner with a single quad, the row has one more quad, in this corner.
     """
     half, n, count = half_edges(mesh), len(mesh.nodes), len(path)
     new = list(range(n, n + count))

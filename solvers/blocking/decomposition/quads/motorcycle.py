@@ -29,7 +29,10 @@ Station = tuple[float, int, int, int]
 
 @dataclass(frozen=True, eq=False)
 class MotorcycleGraph:
-    """Lines that start at the singular points of a map and end at the first line or wall that they meet."""
+    """Lines of constant u or v, in a map of a domain to the u, v plane, that divide it into regions.
+
+    Each starts at a singular point of the map or at a wall. It ends where it first meets a line or a wall.
+    """
 
     map: SeamlessMap
     vertex: Indices  # (n,) vertex of the triangulation at each node, -1 if a ray ended elsewhere

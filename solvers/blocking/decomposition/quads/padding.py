@@ -34,7 +34,7 @@ def loops_to_pad(mesh: QuadMesh) -> list[int]:
 
 
 def spans_to_pad(mesh: QuadMesh, spans: Sequence[Span]) -> list[Span]:
-    """Return those of `spans` (parts of loops) between whose ends a node has too many or too few quads."""
+    """Return the `spans` (parts of loops) with too many or too few quads at a node between their ends."""
     places, wrong = mesh.places, wrong_count(mesh)
     return [
         (loop, begin, end)
@@ -62,9 +62,10 @@ def pad(mesh: QuadMesh, loops: Sequence[int]) -> QuadMesh:
 
 
 def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
-    """Return the mesh with a row of quads along part of a loop, between corners that have a single quad each.
+    """Return the mesh with a row of quads added along `span`, a part of a boundary loop, inside the domain.
 
-    If both are the same corner, the row is closed. `with_row` describes the order of the new quads.
+    The span starts and ends at a corner with a single quad. If both are the same corner, the row goes around
+    the whole loop. `with_row` describes the order of the new quads.
     """
     number, begin, end = span
     on, length = np.flatnonzero(mesh.places.loop == number), mesh.domain.loops[number].length
