@@ -29,9 +29,11 @@ class NormalEquations:
         residual i depends. An index -1 stands for a quantity that is fixed.
     block : 2 if an index stands for two unknowns, such as x and y; `Residuals.derivatives` are then (k, 2 m).
 
+    The example minimises ((x - 1)² + (x - 3)²) / 2 from x = 0:
+
     >>> equations = NormalEquations(1, [np.array([[0], [0]])])
     >>> two = Residuals(np.array([[1.0], [1.0]]), np.ones(2), np.array([-1.0, -3.0]))
-    >>> equations.step([two], np.zeros(1), np.zeros(1)).tolist()
+    >>> equations.step([two], diagonal=np.zeros(1), slope=np.zeros(1)).tolist()
     [2.0]
     """
 

@@ -47,13 +47,17 @@ class Field:
         return cls(sources, places, np.ascontiguousarray(areas[sources]), near, where)
 
     def blended(self, motions: Floats) -> Floats:
-        """Return the displacements (m, d) of `points` for `motions` of the sources, a result of `affine`."""
+        """Return displacements (m, d) of m nodes for given `motions` (see `affine`) of k boundary nodes."""
         moved = np.empty_like(self.points)
         blend_motions(self.places, self.areas, motions, self.near, self.points, thread_count(), moved)
         return moved.T
 
     def transposed(self, pull: Floats) -> Floats:
-        """Return the gradient (6, k), with respect to `motions`, of ``(pull * blended(motions)).sum()``."""
+        """Return the gradient (6, k) of ``(pull * u).sum()`` with respect to the motions of k boundary nodes.
+
+        From these motions, 6 numbers per boundary node, `blended` computes displacements u (m, 2) in the
+        plane. `pull` has the shape of u.
+        """
         gathered = np.empty((6, len(self.areas)))
         force = np.ascontiguousarray(pull.T)
         blend_transposed(self.places, self.areas, self.near, self.points, force, gathered)
@@ -133,7 +137,10 @@ def _near(moved: Floats, fixed: Floats) -> float:
 
 
 def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
-    """Return a side's unit normal (d,); None if it is bent, before or after nodes move to `there` (n, d)."""
+    """Return the unit normal (d,) of the line or plane in which a side's nodes lie before and after a move.
+
+    None if there is no such line or plane. `there` (n, d) are the positions of all nodes after the move.
+    """
     nodes, after = (each[piece.numbers.ravel()] for each in (table.nodes, there))
     centre = nodes.mean(axis=0)
     _, size, ways = singular_values(nodes - centre)

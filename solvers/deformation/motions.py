@@ -31,7 +31,7 @@ class Turning:
         return cls(edges, nearness[:, None] / total[edges])
 
     def angles(self, old: Floats, new: Floats) -> Floats:
-        """Return the angle (n,) in radians by which each wall node turns from `old` to `new` (n, 2)."""
+        """Return by how many radians (n,) a wall rotates at each node, from positions `old` to `new`."""
         before, after = (nodes[self.edges[:, 1]] - nodes[self.edges[:, 0]] for nodes in (old, new))
         return self._at_nodes(angle_between(before, after), len(old))
 

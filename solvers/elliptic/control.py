@@ -22,19 +22,19 @@ class Factors:
 
     @classmethod
     def none(cls, ni: int, nj: int) -> Factors:
-        """Return the factors of a sum without products, which is zero at all ni x nj nodes."""
+        """Return the function that is zero at all ni x nj nodes: a sum without terms."""
         return cls(np.zeros((0, ni)), np.zeros((0, nj)))
 
     def values(self) -> Floats:
-        """Return the sum (ni, nj) of the products of factors at all nodes."""
+        """Return the function's values (ni, nj): Σ_t along[t, i] across[t, j] at node (i, j)."""
         return np.asarray(product(self.along.T, self.across))
 
     def kept(self, i: Indices, j: Indices) -> Factors:
-        """Return the factors at the nodes with first index in `i` and second index in `j`."""
+        """Return the function at the nodes with first index in `i` and second index in `j`."""
         return Factors(np.ascontiguousarray(self.along[:, i]), np.ascontiguousarray(self.across[:, j]))
 
     def scaled(self, part: float) -> Factors:
-        """Return factors whose sum of products is `part` times as large."""
+        """Return this function of the nodes, multiplied by `part`."""
         return replace(self, along=part * self.along)
 
     def __add__(self, other: Factors) -> Factors:
@@ -47,7 +47,8 @@ class Controls:
     """Control functions φ and ψ of Winslow's equations, as logarithms of ratios of neighbouring edge lengths.
 
     The equations are α (x_ξξ + φ x_ξ) - 2β x_ξη + γ (x_ηη + ψ x_η) = 0, with the metric coefficients α, β, γ.
-    A logarithm l along ξ gives φ = -(2/h) tanh(h l/2) on a multigrid level with step h in ξ.
+    Steps in ξ are 1 on the finest multigrid level. If l is the logarithm along ξ there, it is h l on a level
+    with steps h, and φ = -(2/h) tanh(h l/2).
     """
 
     phi: Factors  # logarithm of the ratio of neighbouring edge lengths along ξ and along η

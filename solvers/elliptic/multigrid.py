@@ -90,7 +90,10 @@ class Multigrid:
         return float(np.sqrt(level.residual(False) / level.x.size))
 
     def nested_iteration(self) -> float:
-        """Solve from coarse to fine. Return the residual of transfinite interpolation on the finest level."""
+        """Set the nodes to a first solution, by nested iteration from the coarsest level to the finest.
+
+        Returns a reference for later residuals: that of transfinite interpolation on the finest level.
+        """
         last = len(self.levels) - 1
         self.interpolate_edges(last)
         start = self.residual(last)

@@ -35,8 +35,8 @@ def solve(
 ) -> Solution:  # fmt: skip
     """Solve Winslow's equations for the nodes inside `boundary`, with or without control functions.
 
-    The wake of a C boundary is fixed. At re-entrant corners the grid may be folded
-    (`meshonet.solvers.pipeline.fallback`).
+    The wake of a C boundary is fixed. At re-entrant corners the resulting grid may be folded;
+    `meshonet.solvers.pipeline.fallback.guard` can repair it.
 
     Parameters
     ----------

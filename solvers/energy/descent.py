@@ -95,7 +95,7 @@ def listener_of(nodes: Floats) -> Callable[[int, float, float], None] | None:
 
 
 def in_cells(tolerance: float, nodes: Floats) -> float:
-    """Return the displacement, in cell sizes, below which iterations end: `tolerance` √N for N cells."""
+    """Return `tolerance`, a fraction of the domain's size, in cell sizes: multiplied by √N for N cells."""
     return tolerance * float(np.sqrt((nodes.shape[0] - 1) * (nodes.shape[1] - 1)))
 
 

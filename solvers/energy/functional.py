@@ -18,11 +18,13 @@ from meshonet.kernels._native import variational_energy
 class Weights:
     """Weights w and β of the functional E.
 
-    u and v are the edges along xi and eta at a corner of a cell, or their means at its centre. Then g = |u|²,
-    h = |v|² and J = u × v. a is the aspect ratio (`aspect_of`), Δ a difference between neighbouring edges::
+    In a grid of ni x nj nodes, u and v are the edges along xi and eta at a corner of a cell, or their means
+    at its centre. Then g = |u|², h = |v|² and J = u × v. The number a is the mean of |v| in the whole grid
+    divided by that of |u| (`aspect_of`). l is the length of an edge, and Δ_i log l the difference of log l
+    between edges that are neighbours in index i::
 
         T = (1-w) (a g + h/a) / (2J) + w (g h / J²)²
-        S = mean over cells of ((ni-1) Δ_i log l)² + ((nj-1) Δ_j log l)²,  with lengths l of edges
+        S = mean over cells of ((ni-1) Δ_i log l)² + ((nj-1) Δ_j log l)²
         E = mean over cells of (mean of T at corners + 2 T at the centre) / 3
           + β (S of the edges along xi + S of the edges along eta)
 
@@ -44,7 +46,7 @@ WAKE = Weights(smoothness=3e-5)
 
 
 def value(nodes: Floats, weights: Weights) -> float:
-    """Return the variational functional of four-sided `nodes` (ni, nj, 2); infinite if cells are folded."""
+    """Return the variational functional of a four-sided grid (ni, nj, 2); infinite if cells are folded."""
     z = np.moveaxis(nodes, -1, 0)
     terms = aspect_of(nodes), weights.shape, weights.smoothness, 0.0, False, None
     return variational_energy(z, *terms, np.empty_like(z))[0]
@@ -64,7 +66,8 @@ def relief_of(wall: Floats) -> Floats:
 def aspect_of(nodes: Floats, periodic: bool = False) -> float:
     """Return the variational functional's aspect ratio: mean edge length along eta divided by that along xi.
 
-    The means are root mean squares over the boundary or, if `periodic`, over all cells, weighted by 1 / area.
+    The means are root mean squares over boundary edges. If `periodic`, they are over all cells instead, each
+    with the weight 1 / area.
     """
     if periodic:
         u, v = np.diff(nodes, axis=0)[:, :-1], np.diff(nodes, axis=1)[:-1]

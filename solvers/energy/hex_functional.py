@@ -12,10 +12,10 @@ from typing import Literal
 class HexWeights:
     """Weights of the functional of angles for hexahedra, or, if `power` is 0, of the functional of cubes.
 
-    u, v, w are the edges at a corner of a cell, each divided by its target length, and J = det(u, v, w). l
-    are the lengths of all edges along one of the three index directions, divided by target lengths. Δ_e is
-    the difference of neighbours in direction e, N the number of cells, q `shape`, β `smoothness` and p
-    `power`. The functional of angles is::
+    u, v, w are the edges at a corner of a cell, each divided by its target length, and J = det(u, v, w). l is
+    the length of an edge along one of the three index directions, divided by its target length. Δ_e log l is
+    the difference of log l between two such edges that are neighbours in index direction e. N is the number
+    of cells, q is `shape`, β `smoothness` and p `power`. The functional of angles is::
 
         E = mean over the corners of cells of
                 (1-q) (|u × v|² + |v × w|² + |w × u|²) / (3J) + q (|u|² |v|² |w|² / J²)^p
@@ -27,8 +27,9 @@ class HexWeights:
 
         E = mean over cells of the integral of |T|² / (3 det(T)^⅔)
 
-    While cells are folded, J is replaced by χ = (J + √(J² + ε²)) / 2 > 0. A minimisation ends after two
-    consecutive steps, each of which lowers the value by less than the fraction `gain`.
+    While cells are folded, J is replaced by χ = (J + √(J² + ε²)) / 2 > 0, with a number ε that is reduced as
+    they unfold. A minimisation ends after two consecutive steps, each of which lowers the value by less than
+    the fraction `gain`.
     """
 
     shape: float = 0.9

@@ -56,14 +56,9 @@ class Problem:
     descent: QuadDescent
 
     def __init__(
-        self,
-        mesh: QuadMesh,
-        unknowns: Unknowns,
-        walls: Walls,
-        aspects: Floats | None,
-        targets: Floats | None,
-        turning: float = ALLOWED,
-    ) -> None:
+        self, mesh: QuadMesh, unknowns: Unknowns, walls: Walls, aspects: Floats | None,
+        targets: Floats | None, turning: float = ALLOWED,
+    ) -> None:  # fmt: skip
         self.mesh, self.walls, self.unknowns = mesh, walls, unknowns
         self.centre = 0.5 * (mesh.nodes.min(axis=0) + mesh.nodes.max(axis=0))
         area = mesh.domain.area / len(mesh.quads)
@@ -107,21 +102,14 @@ class Problem:
         line, pairs = self._lines()
         target = np.zeros(len(line)) if targets is None else log(targets)
         return QuadDescent(
-            self.nodes,
-            (self.quads, np.stack([ratio, 1.0 / ratio], axis=1), self.areas),
-            (self.mesh.edges, line, pairs, target),
-            self._relief(),
-            self.inner,
+            self.nodes, (self.quads, np.stack([ratio, 1.0 / ratio], axis=1), self.areas),
+            (self.mesh.edges, line, pairs, target), self._relief(), self.inner,
             (np.stack([known.images, known.originals], axis=1), self.mesh.shifts(known.images) / self.unit),
-            self.unknown,
-            self.wall,
-            (walls.nodes, self.of_wall, self.arc),
+            self.unknown, self.wall, (walls.nodes, self.of_wall, self.arc),
             (walls.edges, walls.round / self.unit),
             tuple(self._loop(number) for number in range(len(self.mesh.domain.loops))),
-            BENT * (ALLOWED / turning) ** 2 / min(max(len(self.quads), 1), MANY),
-            turning,
-            self._crossed(),
-        )
+            BENT * (ALLOWED / turning) ** 2 / min(max(len(self.quads), 1), MANY), turning, self._crossed(),
+        )  # fmt: skip
 
     def _crossed(self) -> Indices:
         """Return pairs (k, 2) of edges at irregular inner nodes, with exactly one other edge between."""

@@ -39,7 +39,7 @@ def optimise(
     targets: Floats | None = None, tolerance: float = 1e-4, turning: float = ALLOWED,
     weights: tuple[float, float] = SIZED, growth: tuple[float, float] = (0.0, 0.0),
 ) -> QuadOptimum:  # fmt: skip
-    """Return the mesh with its nodes at the variational optimum; wall nodes slide along their walls.
+    """Return the mesh with nodes moved for optimal angles and edge lengths; wall nodes slide along walls.
 
     Periodic partners move together. Cells without free nodes are ignored, but must not be folded. The
     smoothness term compares the length of each edge with those of the opposite edges of its cells, and of the
@@ -52,7 +52,7 @@ def optimise(
     aspects : (m,) for each cell, target length of its sides 1-2 and 0-3 divided by that of sides 0-1 and 3-2.
     targets : (e,) target lengths of `mesh.edges` in any unit, because only ratios of neighbours matter.
     tolerance : the iteration ends after two consecutive relative gains below a hundredth of this.
-    turning : angle in radians by which a wall may turn along one edge without penalty.
+    turning : angle in radians; wall edges along which the wall's direction changes by more are penalised.
     weights : weights of angles and of smoothness, used only with `targets` or with a penalty for growth.
     growth : weight of a penalty for growth ratios, and the logarithm of the largest ratio without penalty.
     """

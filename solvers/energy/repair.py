@@ -67,12 +67,9 @@ def repair(nodes: Floats, periodic: bool, margin: int = MARGIN) -> int:
 
 
 def _repair_windows(
-    nodes: Floats,
-    periodic: bool,
-    budget: UnfoldingBudget,
-    margins: tuple[int, ...] = (MARGIN, *MARGINS),
+    nodes: Floats, periodic: bool, budget: UnfoldingBudget, margins: tuple[int, ...] = (MARGIN, *MARGINS),
     nested: bool = False,
-) -> int:
+) -> int:  # fmt: skip
     """Untangle windows around folded cells, directly or (`nested`) through coarser copies; see `repair`."""
     largest = (16 if nested else 1) * LARGEST_CELLS
     left = count_folded(nodes)

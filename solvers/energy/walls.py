@@ -36,8 +36,8 @@ class Walls:
 def walls_of(mesh: QuadMesh, fixed: Bools, tied: Bools) -> Walls | None:
     """Return the wall nodes of a mesh, with arc lengths that increase from node to node along each wall.
 
-    Where they do not increase, nodes get new arc lengths. `fixed` (n,) is the mask of nodes that keep theirs,
-    `tied` (n,) that of nodes on periodic sides, no walls. Returns None if fixed nodes are out of order.
+    Nodes that are out of order get new arc lengths, except those in the mask `fixed` (n,). Returns None if
+    fixed nodes are out of order. Nodes in the mask `tied` (n,) are on periodic sides, which are not walls.
     """
     places = mesh.places
     on = (places.loop >= 0) & ~tied

@@ -44,7 +44,9 @@ def fastest(nodes: Floats) -> Floats:
 
 
 def even_shares(nodes: Floats, steps: Floats, rate: float, constant: int) -> Floats:
-    """Return `shares` (n,) for `level_steps`, with which the largest growth ratio is the same on all levels.
+    """Return numbers (n,) for new march steps with the same largest growth ratio of cells on all levels.
+
+    `level_steps` makes log(step k / step (k - 1)) proportional to number k (its argument `shares`).
 
     Parameters
     ----------
@@ -67,17 +69,16 @@ def level_steps(
     ----------
     constant : number of equal steps at the wall; all further steps grow by one ratio.
     edge : sharp edge of the wall, or None; steps grow less where grid lines diverge from this edge.
-    shares : (cells,) numbers in place of `constant` and `edge`: the logarithm of step k divided by step k - 1
-        is proportional to ``shares[k]``; ``shares[0]`` is 0.
+    shares : (cells,) relative growth of the steps, used in place of `constant` and `edge`:
+        log(step k / step (k - 1)) is proportional to ``shares[k]``; ``shares[0]`` is 0.
 
     >>> level_steps(1.0, 9.0, 5, 3, None).tolist()
     [1.0, 1.0, 1.0, 2.0, 4.0]
     """
     if shares is not None:
         place = np.cumsum(shares)
-        rate = growth_rate(
-            place, first, distance, max(math.log(distance / first) / max(float(place[-1]), 1e-9), 1.0)
-        )
+        most = math.log(distance / first) / max(float(place[-1]), 1e-9)
+        rate = growth_rate(place, first, distance, max(most, 1.0))
         return np.asarray(first * exp(rate * place))
     plain = growing_steps(first, distance, cells, constant)
     if edge is None or cells < 3 or plain[-1] == plain[-2]:

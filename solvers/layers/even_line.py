@@ -53,7 +53,10 @@ class Measures:
     slack: Floats | float = 1.0
 
     def at(self, places: Floats, closed: bool) -> Floats:
-        """Return the functions' values (k, n) at positions `places` (n,), on any turn of a `closed` curve."""
+        """Return the values (k, n) of k functions along a curve at positions `places` (n,).
+
+        On a `closed` curve, positions may be before its start or beyond its end; the values go on rising.
+        """
         turns = np.zeros(len(places))
         if closed:
             turns, places = np.divmod(places, self.arcs[-1])
@@ -104,7 +107,7 @@ def evened_places(
     The functions `measures` turn positions into lengths; steps are the differences of successive lengths.
     Positions in the mask `fixed` (n,) stay. `limit` is the logarithm of the largest ratio; it is relaxed if
     positions would move by more than `most` steps. On a `closed` curve, the last step leads to the first
-    position. `links` are further conditions. A larger `change` keeps ratios nearer to their initial values.
+    position. `links` are further conditions. `change` is the weight of a penalty on changes of the ratios.
     """
     line = _Line.of(places, fixed, measures, closed, links, change)
     new = places
@@ -135,7 +138,8 @@ def evened_loops(
 ) -> Layout:
     """Return the layout with nodes moved along loops, so that steps between neighbours grow slowly.
 
-    Steps are differences of functions along a loop, such as arc length; `measures` has them by loop index.
+    A step is the difference of a function along a loop, such as arc length, between neighbouring nodes.
+    `measures` has the functions of each loop that is to change, by the index of the loop.
     `limit` and `most` are as in `evened_places`. Corners stay. If cells would fold, nothing is changed.
     """
     mesh = layout.mesh

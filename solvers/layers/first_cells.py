@@ -17,7 +17,7 @@ from meshonet.kernels._native import layer_steps
 class Heights:
     """First-cell heights at the four edges of a block; 0 if none is prescribed.
 
-    Raises InputError if a height, the number of constant layers or the growth ratio is out of range.
+    Raises InputError if a height, `constant` or `growth` is out of range.
     """
 
     south: float = 0.0  # in the unit of the boundary
@@ -34,9 +34,8 @@ class Heights:
             if not (math.isfinite(height) and height >= 0):
                 raise InputError(f"a first cell of {height:g} off {side}", "give a positive height")
         if self.constant < 1:
-            raise InputError(
-                f"{self.constant} constant layers", "give at least 1", parameter="constant_layers"
-            )
+            problem = f"{self.constant} constant layers"
+            raise InputError(problem, "give at least 1", parameter="constant_layers")
         check_growth(self.growth)
 
     @property
@@ -79,8 +78,9 @@ def check_fit(heights: Heights, boundary: Boundary) -> None:
 
 
 def cells_needed(length: float, first: float, last: float, heights: Heights) -> int:
-    """Return how many cells fill `length` if the outermost are `first` and `last` long and growth is limited.
+    """Return how many cells fill `length` with growth ratios of at most `heights.growth`.
 
+    `first` and `last` are the lengths of the first and of the last cell; 0: the length is not prescribed.
     Raises InputError if 100,000 cells are too few.
     """
     least = heights.constant * ((first > 0) + (last > 0)) + 1
@@ -108,7 +108,10 @@ def edge_in_layers(edge: Floats, count: int, first: float, last: float, heights:
 def arcs_in_layers(
     curve: Curve, count: int, first: float, last: float, heights: Heights
 ) -> tuple[Floats, float]:
-    """Return node arc lengths (count,) for end cells `first` and `last` long, and largest growth ratio."""
+    """Return arc lengths (count,) of nodes along a curve, and the largest ratio of neighbouring cells.
+
+    `first` and `last` are the lengths of the cells at the ends of the curve; 0: not prescribed.
+    """
     steps = np.empty(count - 1)
     begin = _arc_at(curve, 0.0, first) if first else 0.0
     end = _arc_at(curve, curve.length, last) if last else 0.0

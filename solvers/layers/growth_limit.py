@@ -42,13 +42,16 @@ class GrowthLimit:
 
     @classmethod
     def at(cls, growth: Floats, limit: float | Floats, change: float = CHANGE) -> Self:
-        """Return the penalty that prefers the log growth ratios `growth` (..., k), clipped to ±`limit`."""
+        """Return a penalty on log growth ratios that exceed `limit` or differ from `growth` (..., k).
+
+        `change` is the weight of differences. Values in `growth` are first clipped to ±`limit`.
+        """
         return cls(limit, np.clip(growth, -limit, limit), change)
 
     def values(self, growth: Floats, weight: float) -> Floats:
         """Return the penalty (..., k) of each log growth ratio ρ in `growth` (..., k).
 
-        It is `change` (ρ - `wanted`)² + `weight` max(0, |ρ| - `limit`)², but linear in |ρ| far above `limit`.
+        It is ``change * (ρ - wanted)² + weight * max(0, |ρ| - limit)²``, but linear in |ρ| far above `limit`.
         """
         excess = np.maximum(np.abs(growth) - self.limit, 0.0)
         near = np.minimum(excess, LINEAR)

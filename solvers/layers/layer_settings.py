@@ -91,7 +91,10 @@ class LayerSettings:
         return min(growth, 1.0 + NOMINAL * (self.limit - 1.0)) if self.limit else growth
 
     def arcs(self, length: Floats, first: float | Floats, last: Floats, cells: int) -> Floats:
-        """Return distances (k, cells + 1) of nodes from walls by `layer_arcs` with these settings."""
+        """Return the distances (k, cells + 1) of nodes from the wall, on k lines of `length` (k,).
+
+        `first` is the height of the first cell, `last` (k,) the approximate height of the last cell.
+        """
         most, steeper = self.growth, STEEPER
         if self.limit:
             most, steeper = math.exp(STEEPEST * math.log(self.limit)), STEEPEST / NOMINAL - 1.0

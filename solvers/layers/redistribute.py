@@ -72,13 +72,8 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
     facts = {**grid.provenance, **{f"spacing_{side}": height for side, height in first_cells.items()}}
     note = f"first cells {heights}, at every node there"
     note += f", growing by at most {growth:.3f} a row" if growth > 1.0 else ""
-    return replace(
-        solution,
-        first_cells=first_cells,
-        grid=Grid.from_nodes(nodes, grid.topology, edges.patches, grid.name, facts),
-        boundary=edges,
-        notes=(*solution.notes, note),
-    )
+    spaced, notes = Grid.from_nodes(nodes, grid.topology, edges.patches, grid.name, facts), solution.notes
+    return replace(solution, first_cells=first_cells, grid=spaced, boundary=edges, notes=(*notes, note))
 
 
 def _within_growth(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple[Floats, float]:

@@ -37,11 +37,11 @@ ROOM = 0.4  # largest relative change of a step between wall nodes in an iterati
 
 
 def slide_walls(boundary: Boundary) -> tuple[Boundary, Controls | None]:
-    """Return the quad `boundary` with nodes moved on south and north, and the controls for the solver.
+    """Return the quad `boundary` with nodes moved on south and north, and a control function for the solver.
 
     The grid lines of an elliptic grid inside the new boundary leave both walls at right angles, except next
-    to oblique west and east sides and at kinks of the walls. The controls, a function φ(ξ), preserve the
-    node spacing of the given walls, averaged over both; they are None if it is constant.
+    to oblique west and east sides and at kinks of the walls. The control function φ(ξ) preserves the node
+    spacing, averaged over both given walls. If this spacing is even, None is returned in its place.
 
     Raises InputError if the topology is not ``quad``.
     """

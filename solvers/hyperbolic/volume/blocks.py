@@ -29,17 +29,14 @@ def volume_grid(surface: Surface, blocks: tuple[Block, ...], in_plane: Indices) 
     ]
     whole, rest = shared(sides)
     partly, outer = shared_in_part(rest)
+    order = sorted((*whole, *partly), key=lambda each: (each.block, _SIDES.index(each.side), each.range))
     connections = tuple(
         replace(
-            each,
-            range=(*each.range, (0, top)),
-            donor_range=(*each.donor_range, (0, top)),
+            each, range=(*each.range, (0, top)), donor_range=(*each.donor_range, (0, top)),
             orientation=(*each.orientation, 2),
         )
-        for each in sorted(
-            (*whole, *partly), key=lambda each: (each.block, _SIDES.index(each.side), each.range)
-        )
-    )
+        for each in order
+    )  # fmt: skip
     plane = {key_of(edge): bool(flag) for edge, flag in zip(surface.open_edges, in_plane, strict=True)}
     patches = []
     for number, (lattice, name) in enumerate(zip(surface.lattices, surface.names, strict=True)):

@@ -20,7 +20,8 @@ _WIDTH, _FALL = 4, 0.35  # rings of nodes around irregular ones that are smoothe
 class Seen:
     """A neighbour of a surface node, or a ghost node that replaces one beyond an open edge.
 
-    Its position is `own` x + `sign` y + `shift`, with the surface node at x and the node `base` at y.
+    Its position is ``own * x + sign * y + shift``, with the positions x of the surface node and y of node
+    number `base`.
     """
 
     base: int
@@ -36,9 +37,8 @@ class Seen:
     def mirrored(self, plane: Plane) -> "Seen":
         """Return the mirror image of this neighbour in `plane`."""
         turned = np.where(np.arange(3) == plane.axis, -1.0, 1.0)
-        return Seen(
-            self.base, self.own, turned * self.sign, turned * self.shift + (1.0 - turned) * plane.value
-        )
+        shift = turned * self.shift + (1.0 - turned) * plane.value
+        return Seen(self.base, self.own, turned * self.sign, shift)
 
     def opposite(self, splay: float) -> "Seen":
         """Return a ghost opposite to this neighbour of a node, 1 + `splay` times as far from the node."""
@@ -74,7 +74,8 @@ def march_graph(
 
     Parameters
     ----------
-    planes, in_plane : p planes of symmetry, and masks (p, k) of the k open edges that are in each plane.
+    planes : p planes of symmetry.
+    in_plane : (p, k) for each plane and each of the k open edges of the surface, whether the edge is in it.
     hollow : (n,) distances from concave edges (`meshonet.geometry.surface.hollows`).
     splay : ghost nodes beyond free edges are 1 + `splay` times as far away as the opposite neighbours.
     boost : additional smoothing at irregular nodes.
@@ -204,19 +205,11 @@ def _sorted(
         return np.fromiter(numbers, dtype=np.intp)
 
     return MarchGraph(
-        order,
-        int(red.sum()),
-        np.ascontiguousarray(near),
-        odd_nodes=whole(k for k, _ in odd),
+        order, int(red.sum()), np.ascontiguousarray(near), odd_nodes=whole(k for k, _ in odd),
         odd_start=np.cumsum([0, *(len(row) for _, row in odd)]),
-        odd_near=whole(m for _, row in odd for m in row),
-        owner=whole(k for k, _ in ghosts),
-        base=whole(int(new[seen.base]) for _, seen in ghosts),
-        own=np.array([seen.own for _, seen in ghosts]),
+        odd_near=whole(m for _, row in odd for m in row), owner=whole(k for k, _ in ghosts),
+        base=whole(int(new[seen.base]) for _, seen in ghosts), own=np.array([seen.own for _, seen in ghosts]),
         sign=np.array([seen.sign for _, seen in ghosts]).reshape(-1, 3).T.copy(),
         shift=np.array([seen.shift for _, seen in ghosts]).reshape(-1, 3).T.copy(),
-        fixed_nodes=whole(k for k, _ in fixed),
-        moves=moves,
-        boost=np.ones(n),
-        hollow=np.ones(n),
-    )
+        fixed_nodes=whole(k for k, _ in fixed), moves=moves, boost=np.ones(n), hollow=np.ones(n),
+    )  # fmt: skip

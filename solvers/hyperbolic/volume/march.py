@@ -82,12 +82,9 @@ def march_surface(
         others = "the others had folded cells or a smaller scaled Jacobian"
         notes.append(f"the best of {tries} marches is used: {others}")
     return Solution(
-        grid,
-        "hyperbolic",
-        notes=tuple(note for note in notes if note),
-        first_cells={"bottom": settings.first_cell},
-        growth=settings.limit,
-    )
+        grid, "hyperbolic", notes=tuple(note for note in notes if note),
+        first_cells={"bottom": settings.first_cell}, growth=settings.limit,
+    )  # fmt: skip
 
 
 def _best(

@@ -28,9 +28,10 @@ class Symmetry(NamedTuple):
 def symmetry_of(surface: Surface, axis: str | None, far: float) -> Symmetry:
     """Return the planes of symmetry of a surface that is marched to the distance `far`.
 
-    `axis` is the normal of the planes, ``none`` for no plane, or None to detect planes. Grid lines cross a
-    plane if much of the surface faces it from a distance below `far`. If `axis` is None, such planes are left
-    out. Raises InputError if one is normal to a given `axis`, or if no plane normal to it has open edges.
+    `axis` is the normal of the planes (x, y or z), ``none`` for no plane, or None to detect planes. Grid
+    lines would cross a plane that much of the surface faces from a distance below `far`. A detected plane of
+    this kind is left out. Raises InputError if a plane normal to a given `axis` is of this kind, or if no
+    plane normal to this axis contains open edges of the surface.
     """
     planes, inside = symmetry_planes(surface, axis)
     kept, notes = [], []
@@ -63,9 +64,10 @@ def closes_in(surface: Surface, plane: Plane) -> float:
 
 
 def symmetry_planes(surface: Surface, axis: str | None) -> tuple[tuple[Plane, ...], Indices]:
-    """Return the p planes normal to `axis` that contain open edges, and a mask (p, k) of the edges in each.
+    """Return planes normal to `axis` that contain open edges of a surface, and the edges in each plane.
 
-    For `axis` see `symmetry_of`. Raises InputError if no open edge is in a plane normal to it.
+    The edges are a mask (p, k) for p planes and all k open edges. For `axis` see `symmetry_of`. Raises
+    InputError if no open edge is in a plane normal to it.
     """
     sides, nodes = surface.open_sides, surface.nodes
     if axis in (None, "none"):
@@ -73,10 +75,8 @@ def symmetry_planes(surface: Surface, axis: str | None) -> tuple[tuple[Plane, ..
     else:
         planes, slack = tuple(p for p in surface.planes if "xyz"[p.axis] == axis), FLAT * surface.size
         if not planes:
-            planes, slack = (
-                _named(nodes, sides, "xyz".index(str(axis)), ROUGH * surface.size),
-                ROUGH * surface.size,
-            )
+            slack = ROUGH * surface.size
+            planes = _named(nodes, sides, "xyz".index(str(axis)), slack)
         if not planes:
             problem = f"no open edge of the surface lies in a plane across {axis}"
             raise InputError(problem, "leave {symmetry} out, or name another axis", parameter="symmetry")

@@ -29,8 +29,8 @@ class Equations(Protocol):
     def adjoint(self, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
         """Return the derivatives (batch, 2, ni, nj) of functionals of grids with respect to boundary nodes.
 
-        `nodes` and `number` are the results of `solve`. `gradient` has the derivatives of the functionals
-        with respect to all nodes. The result has no meaning at inner nodes.
+        `nodes` are the solutions and `number` (batch,) the numbers that `solve` returned. `gradient` has the
+        derivatives with respect to all nodes. The result has no meaning at inner nodes.
         """
         ...
 
@@ -54,7 +54,11 @@ class Converged(BatchFunction):
 
     @staticmethod
     def backward(ctx: Any, gradient: Tensor, _: Tensor) -> tuple[None, Tensor]:
-        """Return None for the equations, and derivatives with respect to the nodes, 0 at inner nodes."""
+        """Return None for the equations, and a functional's derivatives with respect to boundary nodes.
+
+        `gradient` are its derivatives with respect to all nodes of the solution. The result has the same
+        shape (batch, 2, ni, nj), and is 0 at inner nodes.
+        """
         return None, Adjoint.apply(ctx.equations, *ctx.saved_tensors, gradient)  # type: ignore[no-untyped-call]
 
 
@@ -63,14 +67,12 @@ class Adjoint(FirstDerivative):
 
     @staticmethod
     def forward(equations: Equations, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
-        """Return derivatives (batch, 2, ni, nj) with respect to boundary nodes; they are 0 at inner nodes."""
-        (result,) = in_parts(
-            lambda *part: (equations.adjoint(*part),),
-            equations.most(nodes),
-            nodes / unit_of(nodes),
-            number,
-            gradient,
-        )
+        """Return the derivatives of functionals with respect to boundary nodes; they are 0 at inner nodes.
+
+        Arguments and shapes are those of `Equations.adjoint`.
+        """
+        most, scaled = equations.most(nodes), nodes / unit_of(nodes)
+        (result,) = in_parts(lambda *part: (equations.adjoint(*part),), most, scaled, number, gradient)
         inner(result).zero_()
         return result
 
