@@ -34,7 +34,7 @@ class FaceMeasures:
 
 
 def faces(grid: Grid) -> FaceMeasures:
-    """Return the measures of the faces of `grid`. Raises InputError: a surface, which has no such faces."""
+    """Return OpenFOAM's face measures of a planar or volume grid. Raises InputError: a surface grid."""
     if grid.form == "volume":
         cells = [cells_of(block.nodes) for block in grid.blocks]
         ratios = (((number, 0, 0, 0), own.aspect) for number, own in enumerate(cells))

@@ -34,7 +34,7 @@ class Cells:
 
 
 def solid_faces(grid: Grid, cells: Sequence[Cells]) -> Iterator[Values]:
-    """Yield, for groups of faces, the first face's cell, non-orthogonality (None at boundary), skewness."""
+    """Yield for groups of faces: a cell at the first face, non-orthogonality (None at boundary), skewness."""
     for number, (block, own) in enumerate(zip(grid.blocks, cells, strict=True)):
         nodes = np.moveaxis(block.nodes, -1, 0)
         for axis in range(3):

@@ -48,7 +48,7 @@ class Growth:
 
 
 class Tally:
-    """Maximum and mean of values that are added in parts; with `kept`, also the 99th percentile."""
+    """Maximum and mean of values that are added in parts, and, with ``kept=True``, the 99th percentile."""
 
     def __init__(self, *, kept: bool = False) -> None:
         self._max, self._total, self._count = -np.inf, 0.0, 0

@@ -13,13 +13,13 @@ Pairing: TypeAlias = Literal["auto", "name", "order"]
 class GridMatcher:
     """Finds, for each grid, the grid of a reference set with which it is compared.
 
-    Pairing is by ``name`` or by ``order``. With ``auto``, one reference serves all grids. Several are paired
-    by name if the first two references differ in name and any reference has the name of the first grid, else
-    by order. `grids` yields the references, which are read only as far as needed.
+    Pairing is by ``name`` or by ``order``. With ``auto``, a single reference serves all grids. Several are
+    paired by name if the first two references differ in name and any reference has the name of the first
+    grid, else by order. `references` is read only as far as needed.
     """
 
-    def __init__(self, grids: Iterator[Grid], pairing: Pairing = "auto") -> None:
-        self._grids = grids
+    def __init__(self, references: Iterator[Grid], pairing: Pairing = "auto") -> None:
+        self._grids = references
         self._pairing = pairing
         self._passed: list[Grid] = []
 

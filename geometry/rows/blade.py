@@ -42,8 +42,8 @@ class BladeSurface:
 
     The attribute `notes` says what was changed.
 
-    Raises InputError, with the number of the profile from 1: profiles that are in another order, cross, or
-    are too far from hub and casing; also as `BladeProfile`.
+    Raises InputError: profiles that are not in order along the span, cross each other, lie too far apart
+    around the axis, or leave a large gap at hub or casing; a faulty profile (see `BladeProfile`).
     """
 
     def __init__(self, profiles: Sequence[Floats], channel: Channel, blades: int) -> None:
@@ -163,10 +163,10 @@ class BladeSurface:
         return self.crossings(self.lines(u.ravel()), h, len(h) if u.ndim == 1 else 1)
 
     def crossings(self, lines: CubicTable, h: Floats, levels: int = 1) -> Floats:
-        """Return points s, theta (..., 2) of m splines along the span of the blade, at heights `h` (...).
+        """Return points s, theta (..., 2) at which m splines along the span reach the heights `h` (...).
 
-        `lines` are the splines, from the method `lines`. `h` (`levels`, m) is 0 at the hub and 1 at the
-        casing. With one level, it may have any shape of m elements. s is 0 at the inlet and 1 at the outlet.
+        `lines` are the splines, from the method `lines`. `h` is (`levels`, m) or, if `levels` is 1, of any
+        shape with m elements. It is 0 at the hub, 1 at the casing. s is 0 at the inlet, 1 at the outlet.
         """
         out = np.empty((*h.shape, 2))
         spline_crossings(
@@ -179,7 +179,7 @@ class BladeSurface:
         return out
 
     def section(self, h: float, u: Floats) -> Floats:
-        """Return points s, theta (m, 2) of the blade at height `h` (0 hub, 1 casing); see `at` for `u`."""
+        """Return s (0 inlet, 1 outlet), theta (m, 2) at height `h` (0 hub, 1 casing); see `at` for `u`."""
         return self.crossings(self.lines(u), np.full(len(u), h))
 
     @property

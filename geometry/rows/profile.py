@@ -90,7 +90,7 @@ class BladeProfile:
         return made
 
     def aligned(self, places: Floats) -> Self:
-        """Return the profile, the coordinate u around it rescaled so that u is `places` (c,) at corners."""
+        """Return the profile with u, the coordinate around it, rescaled to be `places` (c,) at corners."""
         made, own = copy(self), self.corner_places()
         u = np.concatenate([_ENDS, places])
         way = np.concatenate([self._stops[1], np.interp(own, *self._stops)])
@@ -109,9 +109,9 @@ class BladeProfile:
         return shortest_ways(arcs - edge, length)
 
     def reshaped(self, plane: Floats, heights: Floats) -> Self:
-        """Return the profile through other points.
+        """Return the profile through points with coordinates m', theta (n, 2) in `plane`.
 
-        `plane` (n, 2) has their m' (see `MeridionalMap`) and theta, `heights` (n,) has their h.
+        m' is defined in `MeridionalMap`. `heights` (n,) are from 0 at the hub to 1 at the casing.
         """
         made = copy(self)
         made.__dict__ = {k: v for k, v in vars(self).items() if k not in ("thickness", "_heights")}
@@ -203,7 +203,7 @@ class BladeProfile:
         return np.asarray(np.mod(self.leading + np.interp(u, *self._stops), self.curve.length))
 
     def corner_places(self) -> Floats:
-        """Return places u (c,) of corners, from -0.25 to 0.75 around the profile; 0 is the leading edge."""
+        """Return u (c,) of corners: 0 leading, 0.5 trailing edge; modulo 1, so that -0.25 <= u < 0.75."""
         u, way = self._stops
         at = np.interp(np.mod(self.curve.corners - self.leading, self.curve.length), way, u)
         return np.sort(wrapped(at, -0.25))

@@ -96,7 +96,7 @@ class Section:
 
 
 class Fade(NamedTuple):
-    """Transition of the nodes of a section from its own twist and chord to no twist and another chord."""
+    """Transition of a section's grid nodes, with distance from its outline, to no twist and another chord."""
 
     weight: Floats  # (n,) 1: twist and chord of the section; 0: no twist, and the other chord
     chord: float  # the other chord

@@ -140,7 +140,7 @@ class Stack:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on the sections' points and files, and on a wing that is thinner than its sections."""
+        """Notes on the points and files of the sections, and the note `steep` if it is not empty."""
         notes = [note for section in self.sections for note in section.shape.notes]
         return tuple(dict.fromkeys([*notes, *filter(None, [self.steep])]))
 

@@ -76,7 +76,7 @@ class FirstCell:
     def heights(self, unit: float = 1.0) -> AtWalls | None:
         """Return the first-cell height, or heights by wall; None if not requested.
 
-        `unit` is the reference length of y+, unless the field `length` sets it.
+        `unit` is the reference length of the Reynolds number, unless the field `length` sets it.
         """
         setting = self.first_cell if self.y_plus is None else self.y_plus
         if isinstance(setting, Mapping):
@@ -86,8 +86,8 @@ class FirstCell:
     def height(self, unit: float = 1.0) -> float | None:
         """Return the first-cell height; None if not requested.
 
-        `unit` is the reference length of y+, unless the field `length` sets it. Raises InputError if walls
-        have different heights or a value is out of range.
+        `unit` is the reference length of the Reynolds number, unless the field `length` sets it. Raises
+        InputError if walls have different heights or a value is out of range.
         """
         height = self.heights(unit)
         if isinstance(height, Mapping):
@@ -108,8 +108,8 @@ class FirstCell:
     ) -> tuple[str, ...]:
         """Return a note on how the first-cell height follows from y+; an empty tuple without y+.
 
-        `unit` is the reference length of y+; the text `where` names it, e.g. ``on a chord of 2``. The field
-        `length`, if set, is used and named instead. The note gives heights times `scale`, in `in_unit`.
+        `unit` is the reference length of the Reynolds number; the text `where` names it, e.g. ``on a chord of
+        2``. The field `length`, if set, replaces both. The note gives heights times `scale`, in `in_unit`.
         """
         from meshonet.geometry.spacing.y_plus import height_note
 

@@ -38,8 +38,8 @@ class Sampling:
         Topology of the grid; ``auto``: the topology that suits the shape.
     spacing : str, optional
         Distribution of nodes along a wall, as for the option ``--spacing``. ``auto`` is ``curvature`` in C
-        grids and with a first-cell height. Otherwise it is ``tanh`` around airfoils if `le_spacing` or
-        `te_spacing` is given, ``conformal`` around other airfoils and smooth bodies, and else ``uniform``.
+        grids, and in any grid requested with a first-cell height. Else it is ``tanh`` around airfoils with
+        `le_spacing` or `te_spacing`, ``conformal`` around other airfoils and smooth bodies, else ``uniform``.
     le_spacing, te_spacing : float, optional
         Length of the wall cells at the leading and at the trailing edge, in chords.
     far_field : float, optional

@@ -41,8 +41,8 @@ def arcs_by_curvature(
 
     The cell size h combines four sizes, 1/h⁴ = Σ 1/hₖ⁴. Two are the sizes at the trailing and at the leading
     edge plus `GROWTH` (ln 1.1) times the distance from there. One is the length on which the curve turns by 3
-    degrees. One is the same everywhere, such that there are `cells` cells. If cells are too few, growth, the
-    size at the leading edge and the angle of 3 degrees are increased.
+    degrees. One is the same everywhere, such that there are `cells` cells. If the first three alone need more
+    cells, the growth, the size at the leading edge and the angle of 3 degrees are increased.
 
     Parameters
     ----------

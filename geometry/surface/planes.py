@@ -62,7 +62,7 @@ def edges_in(nodes: Floats, sides: Indices, plane: Plane, slack: float) -> Indic
 
 
 def slant(nodes: Floats, sides: Indices, plane: Plane) -> float:
-    """Return the mean angle in degrees by which faces at open edges in a plane are not normal to it."""
+    """Return the mean angle, in degrees, between the normal of `plane` and faces with open edges in it."""
     mine = sides[edges_in(nodes, sides, plane, FLAT * extent_of(nodes))]
     a, b, c, d = (nodes[mine[:, k]] for k in range(4))
     normal = np.cross(c - a, d - b)

@@ -79,11 +79,11 @@ def surface_of(grid: Grid, *, poles: Literal["replace", "refuse"] = "replace") -
 
     Where a side is a single point (a pole), new patches replace the cells around it; if `poles` is
     ``refuse``, a pole is an error. Open trailing edges are closed. Patches with the opposite orientation are
-    reversed along i. Notes report these changes. Normals point outwards if the surface is closed, or if
-    planes of symmetry close it, all normal to one axis. Otherwise most cells keep their orientation. Raises
-    InputError: a block that is not a patch; an edge of zero length or of three quads; parts that touch only
-    at a node; sides that nearly match, or meet with different nodes; an open trailing edge with different
-    numbers of nodes across its two ends; no consistent orientation.
+    reversed along i. Notes report these changes. Normals point outwards if the surface is closed, or
+    becomes closed by parallel planes of symmetry. Otherwise most cells keep their orientation. Raises
+    InputError: a block that is not a patch; an edge of no length; an edge that three quads share; parts that
+    touch only at a node; sides that meet with different nodes or a narrow gap; no consistent orientation; an
+    open trailing edge with different numbers of nodes across its thickness at its two spanwise ends.
     """
     if any(block.nodes.ndim != 3 or block.nodes.shape[-1] != 3 for block in grid.blocks):
         problem = "a surface is made of patches (ni, nj, 3), and a block of this grid is none"

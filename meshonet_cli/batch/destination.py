@@ -99,7 +99,7 @@ class Destination:
         return path
 
     def check_room(self, remedy: str = "") -> None:
-        """Raise InputError, with `remedy`, if the output is one file that stores only one result."""
+        """Raise InputError, with `remedy`, if the output is one file that cannot store several results."""
         if not (self.each or self.format.many):
             remedies = filter(None, (self._named("stem"), remedy))
             problem = f"several inputs and one {self.format.name} file, which holds one"

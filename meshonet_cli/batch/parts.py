@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PartTask:
-    """A task: the number of a part, from 0, and its inputs."""
+    """Task of making one file (part) of a dataset: the number of the part, from 0, and the inputs for it."""
 
     number: int
     inputs: tuple[str | InputError | Draw, ...]

@@ -14,8 +14,7 @@ _MOST_NAMED = 12  # words between options that are all kept
 def provenance(arguments: Sequence[str] | None = None) -> dict[str, str]:
     """Return version and command line of the program; the command line is without the name of the output.
 
-    The same inputs and settings thus give the same bytes. `arguments` are without the program's name; None:
-    the arguments of this process.
+    `arguments` are without the program's name; None: the arguments of this process.
 
     >>> provenance(["tfi", "a b.csv", "-o", "grid.vts", "--res", "80"])["command"]
     "meshonet tfi 'a b.csv' --res 80"

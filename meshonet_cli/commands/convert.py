@@ -44,11 +44,11 @@ def convert(
     ),
     planes: int | None = _option(
         metavar="K", min=2, max=10_000, help="Number of planes of nodes for --extrude or --revolve. "
-        "[default: 2; in sectors and full rings enough for cells of at most 4 degrees]",
+        "[default: 2; if --revolve is above 10 degrees, at least one every 4 degrees]",
     ),
     plot3d: str | None = _output(
-        metavar="WORDS", help="Variant of the Plot3D output; if the output has another format, of the "
-        "Plot3D input. Give words with commas between them, at most one of each group: ascii/binary/fortran, "
+        metavar="WORDS", help="Variant of the Plot3D output or, if only the input is Plot3D, of the "
+        "input. Give words with commas between them, at most one of each group: ascii/binary/fortran, "
         "multi/single, 2d/3d, no-iblank/iblank, little/big, float64/float32; for reading also whole/planes; "
         "for writing also span-k/span-i/span-j. The documentation's page on conventions of formats explains "
         "them. [default: for writing the first of each group or as the extension implies; for reading as "

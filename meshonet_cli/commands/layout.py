@@ -50,8 +50,8 @@ def layout(
 ) -> int:
     """Split domains into blocks and write the block layout.
 
-    If a first-cell height is given, the layout has only the blocks outside the boundary layers. The commands
-    infer and solve-pde add the blocks of the layers.
+    If a first-cell height is given, the layout has only the blocks outside the boundary layers. The blocks of
+    the layers are added by meshonet infer or meshonet solve-pde.
     """
     from meshonet_cli.tasks.layouts import write_layouts
 

@@ -80,8 +80,8 @@ def solve_pde(
 ) -> int:
     """Make elliptic, variational or marched grids.
 
-    Six surface patches, or the faces of a volume grid, are filled with a volume grid. If a first-cell height
-    is given, the volume outside a surface is marched. A multi-block grid is smoothed across interfaces.
+    Six surface patches, or the faces of a volume grid, are filled with a volume grid. With a first-cell
+    height, it is instead marched outwards from a surface. A multi-block grid is smoothed across interfaces.
     """
     from meshonet_cli.tasks.grids import initial_grid, write_grids
 

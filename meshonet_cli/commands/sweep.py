@@ -43,8 +43,8 @@ def sweep(
         "with a first cell, as many as --growth needs]",
     ),
     around: int | None = _sampling(
-        metavar="N", help="Number of cells around a circle, a multiple of four. [default: 88; with --cells "
-        "as many as it requires, but at least 84]",
+        metavar="N", help="Number of cells around a circle, a multiple of four. [default: 88; if --cells "
+        "is given, the number that suits it, but at least 84]",
     ),
     planes: int | None = _volume(
         metavar="K", help="Number of planes of nodes along the path or around the axis. [default: enough for "

@@ -37,7 +37,7 @@ class Delivered(Timed):
 def delivered(
     item: Item[Any], what: Grid | Boundary, facts: dict[str, Any], text: str = "", notes: Sequence[str] = ()
 ) -> Delivered:
-    """Return the report of a grid or boundary; messages show `text`, or its topology if `text` is empty."""
+    """Return the report of the grid or boundary `what`; messages show `text` or, if empty, the topology."""
     counts, topology = _counts(what), what.topology
     size = (
         "{ni} x {nj} nodes" if "ni" in counts else "{blocks} blocks, {cells} cells, {interfaces} interfaces"

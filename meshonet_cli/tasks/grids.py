@@ -89,7 +89,7 @@ def write_grids(
 
     Parameters
     ----------
-    criteria : limits on quality; if a grid fails by one, the exit code is 1.
+    criteria : limits on quality; if a grid does not meet them, the exit code is 1.
     history : CSV file to which solver cycles are written.
     assemble : whether all inputs together form one domain.
     """

@@ -147,7 +147,7 @@ class Session:
             self.conclude(report)
 
     def conclude(self, total: Timed | BatchSummary) -> None:
-        """Print the report of all members on standard output, even with `quiet`."""
+        """Print a report, or the table of a whole batch, on standard output, even with `quiet`."""
         if self.as_json:
             self.result(total.as_json())
         else:

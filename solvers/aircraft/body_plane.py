@@ -169,7 +169,7 @@ def _from_tail(nodes: Floats, length: float) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class BodyEnd:
-    """Plan of two patches of cells at nose or tail: one covers the tip, the other reaches on to a wing."""
+    """Plan of two patches at the nose or tail of a body: around the tip, and from there to a wing."""
 
     theta: Floats  # (n,) angles of the lines from the pole, the tip of nose or tail
     core: PoleCore  # block that covers the pole, in a plane with polar coordinates s, theta
@@ -182,8 +182,8 @@ class BodyEnd:
         """Return the plan of the patches between the tip of nose or tail and the nearest wing.
 
         Nodes are s, theta, zeta: along, around and away from the body, s = 0 at the tip. `points` maps them
-        to x, y, z. For each of the nested surfaces around the body, innermost first, `sides` has the last
-        nodes (n, 3) of the patches, beside the wing, and the lengths (n,) along s of the cells there.
+        to x, y, z. `sides` has, for each of the nested surfaces around the body, innermost first, the nodes
+        (n, 3) where these patches meet those of the wing, and the lengths (n,) along s of the cells there.
         """
         nodes, cells = sides[0]
         way, last = min((float(nodes[k, 0]), float(cells[k])) for k in (0, -1))

@@ -126,7 +126,7 @@ def shape_notes(section: CleanSection, curve: Curve, chord: float) -> tuple[str,
 
 
 def wall_departure(off: float) -> str:
-    """Return the note on a curve that deviates from its polygon by `off` chords."""
+    """Return the note on an airfoil's smooth curve that departs from its polygon by `off` chord lengths."""
     note = departure_note("the wall is a smooth curve", off, " chords")
     return Change(note) if off > FAR_OFF else note
 

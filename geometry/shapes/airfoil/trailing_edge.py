@@ -60,10 +60,10 @@ def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
 
 
 def half_rounds(curve: Curve, end: float, cells: int) -> tuple[Floats, Floats]:
-    """Return distances (n + 1,) of nodes from the middle of a rounded base, for its lower and its upper half.
+    """Return distances (n + 1,) of nodes from the middle of a rounded base along its lower and upper half.
 
-    Cells are smaller where the curve turns more. `curve` and `end` are the results of `rounded_base`. A half
-    that turns by 90 degrees has about `cells` cells. `cells` is at least 3.
+    `curve` begins in the middle of the base, each half of which has the length `end`. Cells are smaller where
+    the curve turns more. A half that turns by 90 degrees has about `cells` (at least 3) cells.
     """
     per_cell = 64
     n = per_cell * cells  # on either half; index n is the middle

@@ -19,10 +19,11 @@ if TYPE_CHECKING:
 def wall_arcs(body: Airfoil, ni: int, sampling: Sampling) -> Floats:
     """Return the arc lengths (ni,) of the wall nodes, from 0 to the length of the curve.
 
-    With the spacing ``conformal``, nodes have equal angles in a conformal map to the circle. ``tanh`` and
-    ``auto`` stretch each side between its end cells. ``tanh`` replaces ``cosine`` if a cell length is given
-    or the trailing edge is blunt. ``curvature``: see `geometry.spacing.size_field`. The given cell lengths,
-    `le_spacing` and `te_spacing`, are met within 1 %. Raises InputError: too few nodes.
+    With the spacing ``conformal``, nodes have equal angles in a conformal map to the circle. With ``tanh`` or
+    ``auto``, cells on each side grow by a hyperbolic tangent from the leading and from the trailing edge.
+    ``tanh`` replaces ``cosine`` if a cell length is given or the trailing edge is blunt. ``curvature``: see
+    `geometry.spacing.size_field`. If `le_spacing` or `te_spacing` is given, it is met within 1 %. Raises
+    InputError: too few nodes.
     """
     least = 7 if body.half_base else 5
     if ni < least:

@@ -36,8 +36,8 @@ def shared(
 ) -> Iterator[Pair]:  # fmt: skip
     """Yield each member of the batch `todo` with its result; `work` runs on the workers of `engine`.
 
-    Members keep the order of `todo`. A worker gets `size` members at a time. If `size` is 1, it gets as many
-    members as take about 0.1 s.
+    Members keep the order of `todo`. A worker gets `size` members at a time, with one exception: if `size`
+    is 1, it gets as many as take about 0.1 s.
     """
     timed, grows, most = _Timed(work), size == 1, size
 
