@@ -24,7 +24,7 @@ from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_row
 from meshonet.solvers.blocking.unfolded import with_more_cells
 from meshonet.solvers.cascade.cascade import COARSEST, Cascade, scaled
 from meshonet.solvers.cascade.passage import BLADE, INLET, OUTLET, Passage, extended, turned_round
-from meshonet.solvers.cascade.passage_template import cut_of, template
+from meshonet.solvers.cascade.templates import Template, first_valid
 from meshonet.solvers.energy.quad_problem import smallest_jacobian
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.layers.even_line import EVEN, FEW_STEPS, evened_loops
@@ -36,7 +36,7 @@ from meshonet.solvers.stages import Timings, stage
 MOST_OPTIMISED = 4000
 """Largest number of cells that are optimised directly; finer grids are splines through these."""
 CORNERS = ("at first", "later", "nowhere")
-"""Whether nodes are moved to the corners of the blade before the optimisation, in the order of attempts."""
+"""When nodes are moved to the corners of the blade, in the order of attempts."""
 LEAST = 4  # smallest number of cells along the side of an optimised block
 FIRST, ITERATIONS, PASSES = 150, 120, 2  # iterations of the template and of each sized optimum; their number
 WEIGHTS = 0.95, 1e-3  # weights w and β of the functional; with a smaller β rounding errors move nodes by 1 %
@@ -58,19 +58,17 @@ def cascade_layout(
     cascade.check_reach(cells, cell_size)
     with stage("layers", timings):
         passage = cascade.passage
-    for attempt in CORNERS:
-        try:
-            coarse, times, metric = _outside(cascade, passage, attempt, cells, cell_size, timings)
-            break
-        except NoValidGridError:
-            if attempt == CORNERS[-1]:
-                raise
+
+    def outside(template: Template, corners: str) -> tuple[Layout, int, SizeMetric]:
+        return _outside(cascade, passage, template, corners, cells, cell_size, timings)
+
+    coarse, times, metric = first_valid(outside, CORNERS)
     with stage("refine", timings):
         fine = with_more_cells(coarse, times)
         fine = evened_loops(fine, cascade.measures, EVEN, FEW_STEPS)
     with stage("layers", timings):
         rows = _rows(cascade, fine, metric)
-        whole = extended(fine, cut_of(fine), passage, cascade.blade, rows)
+        whole = extended(fine, passage, cascade.blade, rows)
         whole = evened(whole, cascade.layers)
     if smallest_jacobian(whole.mesh.nodes, whole.mesh.quads) <= 0.0:
         raise NoValidGridError("cells of the passage are folded; use more {cells}")
@@ -78,8 +76,8 @@ def cascade_layout(
 
 
 def _outside(
-    cascade: Cascade, passage: Passage, corners: str, cells: int | None, cell_size: float | None,
-    timings: Timings,
+    cascade: Cascade, passage: Passage, template: Template, corners: str, cells: int | None,
+    cell_size: float | None, timings: Timings,
 ) -> tuple[Layout, int, SizeMetric]:  # fmt: skip
     """Return the coarse layout outside the layers, the factor to the final counts, and target cell sizes."""
     if corners == "nowhere":

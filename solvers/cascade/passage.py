@@ -21,6 +21,7 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.periodic import Periodic
 from meshonet.geometry.elementary import product, times
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.periodic_sides import following
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.layers.attach import Rows, attach
 
@@ -147,12 +148,9 @@ def _crossings(polygon: Floats, x: float) -> Floats:
     return np.sort(a[:, 1] + (x - a[:, 0]) / (b[:, 0] - a[:, 0]) * (b[:, 1] - a[:, 1]))
 
 
-def extended(layout: Layout, cut: Indices, passage: Passage, wall: Loop, rows: Sequence[Rows]) -> Layout:
-    """Return the layout extended by `rows` of cells up to the blade's `wall`, to the inlet and to the outlet.
-
-    `cut` (k,) are the nodes on the lower periodic boundary of the passage, from inlet to outlet.
-    """
-    mesh = layout.mesh
+def extended(layout: Layout, passage: Passage, wall: Loop, rows: Sequence[Rows]) -> Layout:
+    """Return the layout extended by `rows` of cells to the blade's `wall`, to the inlet and to the outlet."""
+    mesh, cut = layout.mesh, _lower_side(layout.mesh)
     count = len(mesh.nodes)
     domain = replace(mesh.domain, loops=(wall, *mesh.domain.loops[1:]))
     whole = attach(layout, domain, rows)
@@ -171,6 +169,16 @@ def extended(layout: Layout, cut: Indices, passage: Passage, wall: Loop, rows: S
                 line.insert(*((0, new[::-1]) if each.loop == INLET else (len(line), new)))
         count += len(order) * away
     return _closed(whole, passage, np.concatenate(low), np.concatenate(high))
+
+
+def _lower_side(mesh: QuadMesh) -> Indices:
+    """Return the nodes (k,) on the lower periodic boundary of a passage, from inlet to outlet."""
+    after, loop = following(mesh), mesh.places.loop
+    lower = mesh.places.partner[mesh.places.partner >= 0]
+    chain = [int(lower[loop[lower] == INLET][0])]
+    while loop[chain[-1]] != OUTLET:
+        chain.append(int(after[chain[-1]]))
+    return np.array(chain, dtype=np.intp)
 
 
 def _closed(layout: Layout, passage: Passage, lower: Indices, upper: Indices) -> Layout:

@@ -155,8 +155,3 @@ def _blade_arcs(flow: PassageFlow, angles: Floats, front: Loop) -> Floats:
         closed, knots = closed[::-1], knots[::-1]
     at = closed[0] + np.mod(angles - closed[0], turn)
     return np.asarray(np.mod(np.interp(at, closed, knots), front.length))
-
-
-def cut_of(layout: Layout) -> Indices:
-    """Return the nodes (k,) on the lower periodic side of a `layout` of `template`, from inlet to outlet."""
-    return np.concatenate([layout.blocks[2][:, 0], layout.blocks[4][1:, 0], layout.blocks[7][1:, 0]])

@@ -15,12 +15,13 @@ from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.threads import run_in_threads
+from meshonet.solvers.cascade.templates import around_blade
 from meshonet.solvers.energy.quad_problem import Problem
 from meshonet.solvers.energy.quads import minimise, problem_of
 from meshonet.solvers.layers.layer_settings import layer_lines
 from meshonet.solvers.rows.columns import layer_columns, straight_near
 from meshonet.solvers.rows.harmonic import HarmonicMoves
-from meshonet.solvers.rows.middle_section import LOWER, TOLERANCE, UPPER, folded_section, middle_section
+from meshonet.solvers.rows.middle_section import TOLERANCE, folded_section, middle_section
 from meshonet.solvers.rows.section_plane import SectionPlane
 from meshonet.solvers.rows.span_places import SpanPlaces
 
@@ -176,7 +177,8 @@ def _pairs(layout: Layout, columns: Indices) -> Indices:
     """Return columns (p, 2) on the upper side, and those opposite across the channel."""
     number = np.full(len(layout.mesh.nodes), -1)
     number[columns[:, -1]] = np.arange(len(columns))
-    return np.stack([number[layout.blocks[UPPER][:, 0]], number[layout.blocks[LOWER][::-1, 0]]], axis=1)
+    upper, _, lower, _ = around_blade(layout, number >= 0)
+    return np.stack([number[layout.blocks[upper][:, 0]], number[layout.blocks[lower][::-1, 0]]], axis=1)
 
 
 def _placed(plan: SectionPlan, section: KeySection) -> KeySection:

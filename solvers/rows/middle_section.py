@@ -10,8 +10,9 @@ from meshonet.geometry.layout.lattice import smallest_jacobians
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.cascade.cascade import scaled
-from meshonet.solvers.cascade.cascade_layout import FIRST, WEIGHTS, attached_cells, counts_of
-from meshonet.solvers.cascade.passage_template import template
+from meshonet.solvers.cascade.cascade_layout import CORNERS, FIRST, WEIGHTS, attached_cells, counts_of
+from meshonet.solvers.cascade.passage import BLADE
+from meshonet.solvers.cascade.templates import TEMPLATES, Template, around_blade, first_valid
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.layers.layer_law import layer_arcs
 from meshonet.solvers.layers.layer_settings import JOIN
@@ -21,20 +22,21 @@ from meshonet.solvers.refinement.size_metric import SizeMetric
 from meshonet.solvers.rows.section_plane import SectionPlane
 from meshonet.solvers.rows.whole_section import whole_section
 
-UPPER, TRAILING, LOWER, LEADING = range(8, 12)  # numbers of the template's blocks around the blade
 REMEDY = "use more {cells}, a larger {first_cell}, or profiles nearer to each other there"
 COARSE = 300  # number of iterations of the first optimisation
 TOLERANCE = 1e-3
 _TRIES, _NEAR = 4, 0.03  # largest number of choices of counts; sufficient relative accuracy of the total
 
 
-def coarse_section(plane: SectionPlane, *, early: bool = True) -> Layout:
+def coarse_section(
+    plane: SectionPlane, template: Template = TEMPLATES[0], corners: str = CORNERS[0]
+) -> Layout:
     """Return a coarse, optimised block layout of a section, without layers at the blade.
 
-    With `early`, nodes are put at corners of the layers' outer edge before the optimisation. Raises
-    InputError if there is no room for inlet or outlet; NoValidGridError if cells are folded.
+    `corners` says when nodes are put at corners of the layers' outer edge, see `CORNERS`. Raises InputError
+    if there is no room for inlet or outlet; NoValidGridError if cells are folded.
     """
-    return _sized(template(plane.cascade.passage, at_corners=early), FIRST, None)
+    return _sized(template(plane.cascade.passage, at_corners=corners == CORNERS[0]), FIRST, None)
 
 
 def middle_section(
@@ -50,10 +52,12 @@ def middle_section(
     Raises NoValidGridError if cells are folded.
     """
     plane = planes[len(planes) // 2]
-    try:
-        return _made(planes, cells, longest, coarse or coarse_section(plane))
-    except NoValidGridError:
-        return _made(planes, cells, longest, coarse_section(plane, early=False))
+
+    def made(template: Template, corners: str) -> Layout:
+        begun = coarse if (template, corners) == (TEMPLATES[0], CORNERS[0]) else None
+        return _made(planes, cells, longest, begun or coarse_section(plane, template, corners))
+
+    return first_valid(made, CORNERS[:2])
 
 
 def _made(planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], coarse: Layout) -> Layout:
@@ -61,7 +65,8 @@ def _made(planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, floa
     cascade = plane.cascade
     chords = Chords.of(coarse)
     rows = max(each.cascade.rows_of_layers for each in planes)
-    ends = [chords.chord[chords.sides[block, 0]] for block in (TRAILING, LEADING)]
+    _, trailing, _, leading = around_blade(coarse, coarse.mesh.places.loop == BLADE)
+    ends = [chords.chord[chords.sides[block, 0]] for block in (trailing, leading)]
     wanted = float(cells)
     for _ in range(_TRIES):  # more rows than those of this section, and counts that are rounded
         counts, times, metric = counts_of(cascade, chords, round(wanted), None)

@@ -12,7 +12,6 @@ from meshonet.solvers.blocking.layers.attach import Rows
 from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_rows
 from meshonet.solvers.cascade.cascade_layout import row_steps, straight_rows
 from meshonet.solvers.cascade.passage import BLADE, extended
-from meshonet.solvers.cascade.passage_template import cut_of
 from meshonet.solvers.rows.section_plane import SectionPlane
 
 _BISECTIONS = 60
@@ -47,7 +46,7 @@ def whole_section(
                 False,
             )
         )
-    return extended(beyond, cut_of(beyond), cascade.passage, cascade.blade, rows)
+    return extended(beyond, cascade.passage, cascade.blade, rows)
 
 
 def _grown(first: float, length: float, cells: int) -> Floats:

@@ -34,9 +34,10 @@ BLOCKS = " of blocks"
 READABLE += [name + BLOCKS for name in ("hdf5", "cgns", "plot3d", "plot3d:binary")]
 VOLUMES, SURFACE = " of volumes", " of a surface"
 """Behind the name of a format: files of it that hold grids in space."""
-SPACIOUS = ("hdf5", "cgns", "vts", "vtk", "plot3d")
-READABLE += [name + VOLUMES for name in (*SPACIOUS, "vtk:ascii", "plot3d:binary")]
-READABLE += [name + SURFACE for name in (*SPACIOUS, "plot3d:fortran")]
+_WRITTEN = [(name, format_named(name)) for name in READABLE if " " not in name]
+_SPACIOUS = [(name, each.space) for name, each in _WRITTEN if each.read_grids and each.write_grids]
+READABLE += [name + VOLUMES for name, space in _SPACIOUS if "volumes" in space]
+READABLE += [name + SURFACE for name, space in _SPACIOUS if "surfaces" in space]
 SECTION = "A SECTION\n" + "".join(
     f"{0.5 + 0.5 * np.cos(a):.6f} {0.06 * np.sin(a):.6f}\n" for a in np.linspace(0, 2 * np.pi, 41)
 )
