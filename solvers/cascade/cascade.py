@@ -137,7 +137,7 @@ class Cascade:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """By loop index: arc lengths along which nodes are moved so that steps between them are even."""
+        """Arc lengths along loops, by index of the loop; they should increase evenly from node to node."""
         return {BLADE: self.ring.along} if self.layers.limit else {}
 
     def factors_at(self, arcs: Floats) -> Floats:

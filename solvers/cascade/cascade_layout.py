@@ -33,8 +33,7 @@ from meshonet.solvers.refinement.refine import refine
 from meshonet.solvers.refinement.size_metric import SizeMetric
 from meshonet.solvers.stages import Timings, stage
 
-MOST_OPTIMISED = 4000
-"""Largest number of cells that are optimised directly; finer grids are splines through these."""
+MOST_OPTIMISED = 4000  # cells that are optimised directly; finer grids are splines through these
 CORNERS = ("at first", "later", "nowhere")
 """When nodes are moved to the corners of the blade, in the order of attempts."""
 LEAST = 4  # smallest number of cells along the side of an optimised block
@@ -185,7 +184,7 @@ def attached_cells(
     """Return the number of cells in the layers, and in the straight rows that end at inlet and outlet.
 
     `counts` are the cells along the edges of each chord (set of opposite edges). `layers` replaces the number
-    of layers. `longest` has lengths, keys `INLET` and `OUTLET`, that replace smaller lengths of rows.
+    of layers. `longest` has a length for `INLET` and for `OUTLET`; shorter rows there count as that long.
     """
     along = chords.along_loops(counts).tolist()
     total = along[BLADE] * (cascade.rows_of_layers if layers is None else layers)

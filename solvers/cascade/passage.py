@@ -26,8 +26,7 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.layers.attach import Rows, attach
 
 BLADE, INLET, OUTLET = 0, 1, 2  # numbers of the loops of a passage whose blocks end at the layers
-NEAR = 0.3
-"""Distance in pitches, upstream and downstream of a blade, at which blocks end and straight rows start."""
+NEAR = 0.3  # distance in pitches, up- and downstream of a blade, at which blocks end and straight rows start
 STRETCH_NAMES = ("periodic1", "outlet", "periodic2", "inlet")
 _SMALL = 1e-12  # width of a blade below which a chord of it is no inside
 
@@ -80,15 +79,15 @@ class Passage:
         return np.array([self.period.imag, -self.period.real]) / abs(self.period)
 
     def axial(self, points: Floats) -> Floats:
-        """Return the distances (n,) of points (n, 2) from the centre along the axis."""
+        """Return the axial coordinates (n,) of points (n, 2): 0 at `centre`, positive towards the outlet."""
         return product(points - pairs_of(np.array(self.centre)), self.axis)
 
     def along(self, points: Floats) -> Floats:
-        """Return the distances (n,) of points (n, 2) from the centre along the pitch vector, in pitches."""
+        """Return the coordinates (n,) of points (n, 2) along the pitch vector, in pitches; 0 at `centre`."""
         return np.asarray(((complex_of(points) - self.centre) / self.period).real)
 
     def at(self, axial: Sequence[float], pitches: Sequence[float]) -> Floats:
-        """Return points (n, 2): `centre` moved by lengths `axial` along the axis and by so many `pitches`."""
+        """Return points (n, 2): centre + `axial` * (unit vector of the axis) + `pitches` * (pitch vector)."""
         centre = pairs_of(np.array(self.centre))
         return centre + np.array(axial)[:, None] * self.axis + np.array(pitches)[:, None] * self.pitch
 
@@ -103,8 +102,8 @@ class Passage:
     def domain(self, inlet: float, outlet: float) -> Domain:
         """Return the domain of the blocks between the blade, the inlet and the outlet.
 
-        Along the pitch vector, the upper end of the inlet is `inlet` pitches from the blade's `centre`, and
-        that of the outlet `outlet` pitches. The lower ends are one pitch below.
+        `inlet` and `outlet` are the distances, in pitches, of the upper ends of inlet and outlet from the
+        blade's `centre`, measured along the pitch vector. The lower ends are one pitch below.
         """
         pitch = abs(self.period)
         x, far = (self.inlet, self.outlet), (self.inlet - pitch, self.outlet + pitch)

@@ -38,8 +38,8 @@ class PassageFlow:
     ----------
     half : half the length of the slit, h.
     around : (n,) increasing angles ν of points on the blade; the potential is G = h cos ν.
-    strip : (n,) images σ of the points: the region between blades is mapped to the strip |Im σ| <= π/2, the
-        ends of the slit to infinity.
+    strip : (n,) images σ of the points under the map of the region between blades to the strip |Im σ| <= π/2.
+        They are infinite at the two points that the potential maps to the ends of the slit.
     away : (n,) ζ - G at the points: their complex coordinates (see `Passage.zeta`) minus the potential.
     """
 

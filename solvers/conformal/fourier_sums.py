@@ -15,7 +15,7 @@ FEWEST = 256  # columns
 
 
 def columns(modes: Complexes) -> Floats:
-    """Return values (Q, 2, width) at Q angles, from which windowed sums give m Fourier series at any angle.
+    """Return a table (Q, 2, width) from which m Fourier series can be evaluated quickly at any angle.
 
     `modes` (m, 2 K + 1) are the coefficients c_k of the series for k = 0 .. K, -K .. -1. The axes of the
     result are the angle theta_q, the real and imaginary part of f_q, and the series. `width` is m, rounded up

@@ -16,7 +16,7 @@ def extend(boundary: Boundary) -> Floats:
     """Return the nodes (ni, nj, 2) of the solution of Laplace's equation; boundary nodes are exact.
 
     A quad grid is the bilinear interpolation of its corners plus a series for each side. An O grid is the
-    linear interpolation of the mean nodes of wall and far field plus two series. For the side eta = 0::
+    linear interpolation of the centroids of wall and far-field nodes plus two series. For the side eta = 0::
 
         quad   sum_k b_k sin(k pi xi) sinh(k pi a (1-eta)) / sinh(k pi a),     a = height / length
         o      sum_k c_k exp(2 pi i k xi) sinh(k T (1-eta)) / sinh(k T),       T = log(outer / inner length)

@@ -138,11 +138,11 @@ def from_columns(values: Any, xp: Any = np) -> Any:
 def picard(
     c: Complexes, steps: int, settled: float = 0.0, diverged: float = np.inf
 ) -> tuple[Complexes, list[float]]:
-    """Return the modes of F after at most `steps` Picard steps, and the largest change of F in each step.
+    """Return Fourier modes of F after at most `steps` Picard steps, and the largest change of F in each step.
 
-    The domain around a body is mapped to a strip. theta goes around the body from 0 to 2 pi, eta from 0 at
-    the wall to 1 at the far field. A node is the complex number w(theta, eta) = F + i theta, with the real
-    part across the strip; F is periodic in theta. With derivatives by t = theta and e = eta, w solves::
+    The domain around a body is mapped to a strip along the imaginary axis. In it, the grid is a complex
+    function w(theta, eta). theta goes around the body from 0 to 2 pi, eta from 0 at the wall to 1 at the far
+    field. F = w - i theta is periodic. With derivatives by t = theta and e = eta, w solves::
 
         alpha w_tt - 2 beta w_te + gamma w_ee = 0
         alpha = |w_e|^2,  beta = Re(conj(w_t) w_e),  gamma = |w_t|^2
@@ -150,7 +150,7 @@ def picard(
     A step inverts this operator with the coefficients T^2, 0 and 1 of a uniform strip of height T. The
     iteration ends after a step whose change is below `settled` or at least `diverged`; a change that is not
     finite counts as infinite. `c` (2 MODES + 1, LEVELS) are the initial modes at Chebyshev points of eta. The
-    modes at the two walls do not change.
+    modes at the wall and at the far field do not change.
     """
     T = float((c[0, -1] - c[0, 0]).real)
     parts, grid = np.stack([c.real, c.imag]), across()

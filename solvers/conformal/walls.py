@@ -48,12 +48,12 @@ def walls(boundary: Boundary) -> StripWalls:
 
 
 def is_rough(body: StripWalls) -> bool:
-    """Return whether Fourier modes hardly resolve the uneven spacing of the wall, so that cells may fold.
+    """Return whether Fourier modes hardly resolve the spacing of the wall's nodes, so that cells may fold.
 
     Wall and far field are curves in a strip, the conformal image of the domain. Let s be the sum of the
-    amplitudes, in radians, of the highest Fourier modes of a curve. A curve is resolved if s is at most
-    `SHARPEST`. The wall of an airfoil is rough if s is above that, but below `ROUGHEST`, as with evenly
-    spaced nodes around the leading edge. Raises InputError for any other curve that is not resolved.
+    amplitudes, in radians, of a curve's highest Fourier modes. The curve is resolved if s is at most
+    `SHARPEST`. The wall of an airfoil is rough if s is larger, but below `ROUGHEST`. Raises InputError for
+    other curves that are not resolved.
     """
     n = len(body.wall)
     k = np.minimum(np.arange(n), n - np.arange(n))

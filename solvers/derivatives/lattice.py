@@ -10,8 +10,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices
 
-STEP = 1e-5
-"""Step of central differences relative to the shortest edge at a node; errors are about its square."""
+STEP = 1e-5  # of central differences, relative to the shortest edge at a node; errors are about its square
 
 Equations = Callable[[Floats], Floats]
 """Function from nodes (2, ni, nj) to residuals of the same shape; only those at inner nodes are used."""

@@ -15,8 +15,7 @@ from meshonet.geometry.quality.checkmesh import cells_beyond, faces
 from meshonet.geometry.quality.measure import count_folded_in
 
 _SLACK = 1e-7  # tolerance for rounding, in degrees and for skewness
-_NOTHING = 1.0, 0.05, 0.1
-"""Non-orthogonality, skewness and mean deviation below which differences are ignored."""
+_NOTHING = 1.0, 0.05, 0.1  # non-orthogonality, skewness, mean deviation: smaller differences are ignored
 
 
 @dataclass(frozen=True)

@@ -66,9 +66,9 @@ def suited(
 
     Counts are at least `least`, multiples of `multiple`, and equal on both sides of periodic pairs. `fixed`
     prescribes the counts of some chords, by index. If `named`, a side for which the domain prescribes n cells
-    gets about n * `multiple` / `finer`. A later refinement multiplies all counts by `finer`; n applies to a
-    grid that is coarser than its result by `multiple`. Raises InputError if given counts contradict each
-    other or are too small; SolverError if no counts are equal along periodic sides.
+    gets about n * `multiple` / `finer`. All counts are multiplied by `finer` later; every `multiple`-th grid
+    line then belongs to a coarser grid with n cells along the side. Raises InputError if counts contradict
+    each other or are too small; SolverError if no counts are equal along periodic sides.
     """
     sums, alike = sums_of(chords) if named else {}, _alike(chords)
     if not sums and not alike:
@@ -121,7 +121,10 @@ def _conflict(names: tuple[str, ...], given: Mapping[str, int], sums: Sums, leas
 
 
 def nearer(chords: Chords, counts: Indices, multiple: int = 1) -> Indices:
-    """Return `counts` (chords,), scaled so that sides have about `multiple` times their prescribed cells."""
+    """Return cell counts, scaled so that sides with a prescribed count get about `multiple` times this count.
+
+    `counts` (chords,) and the result have a number of cells for each chord (set of opposite block edges).
+    """
     counts = counts.copy()
     for name, row in sums_of(chords).items():
         total = sum(times * counts[chord] for chord, times in row.items())

@@ -18,7 +18,7 @@ class Rows:
 
     Parameters
     ----------
-    loop : index of the loop at which the lines begin. The loop at which they end replaces it.
+    loop : index of the loop at which the lines begin and, in the new domain, of the loop at which they end.
     nodes : (k, m, 2) x and y of m nodes on each of k lines, in the order in which they begin along the loop.
     arcs : (k,) arc lengths of the last nodes of the lines, on the loop at which they end.
     layers : whether the new cells are layers at a wall, which no later optimisation moves.

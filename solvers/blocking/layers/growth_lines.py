@@ -50,8 +50,8 @@ class GrowthLines:
         """Return all pairs of consecutive edges on grid lines, each with a limit on its length ratio.
 
         Limits are logarithms: `limit` on lines that start at the nodes in the mask `walls` (n,), and where
-        lines cross from block to block; `elsewhere` on other lines. If edges of a wall have larger ratios, so
-        may lines along it in the blocks beside it, except where wall nodes are in the mask `sliding` (n,).
+        lines cross from block to block; `elsewhere` on other lines. In the blocks beside a wall, limits on
+        lines along it rise to the ratios of the wall's edges, except at nodes in the mask `sliding` (n,).
         """
         mesh, pairs = layout.mesh, cls.of(layout.mesh, elsewhere)
         nodes = pairs.nodes
@@ -83,12 +83,18 @@ class GrowthLines:
         return type(self)(self.nodes[which], self.limit[which], self.offset[which], self.begins[which])
 
     def growth(self, z: Complexes) -> Floats:
-        """Return log(second / first length) + `offset` (k,) of pairs of consecutive edges from nodes `z`."""
+        """Return the logarithms (k,) of the length ratios, second over first edge of a pair, plus `offset`.
+
+        The two edges of a pair follow each other on a grid line. `z` (n,) are the nodes as complex numbers.
+        """
         before, after = self.edges(z)
         return np.asarray(log(modulus(after) / modulus(before)) + self.offset)
 
     def edges(self, z: Complexes) -> tuple[Complexes, Complexes]:
-        """Return first and second edges (k,) of k pairs of consecutive edges, from complex nodes `z` (n,)."""
+        """Return two arrays (k,), the first and the second edges of all pairs, as complex vectors.
+
+        The two edges of a pair follow each other on a grid line. `z` (n,) are the nodes as complex numbers.
+        """
         return z[self.nodes[:, 1]] - z[self.nodes[:, 0]], z[self.nodes[:, 2]] - z[self.begins]
 
     def largest_at(self, mesh: QuadMesh, rows: list[Indices]) -> Floats:

@@ -36,7 +36,10 @@ def ring_metric(ring: Ring, settings: LayerSettings, factors: Floats | float = 1
 def last_layers(
     thickness: Floats, rows: int, settings: LayerSettings, first: float | Floats | None = None
 ) -> Floats:
-    """Return the heights (n,) of the first cells beyond `rows` layers with the total `thickness` (n,)."""
+    """Return the heights (n,) of the cells just outside the layers: `settings.join` times the last layer's.
+
+    The `rows` layers are `thickness` (n,) thick together, the first one `first` (default: `settings.first`).
+    """
     none = np.full_like(thickness, np.inf)
     arcs = layer_arcs(thickness, settings.first if first is None else first, none, rows, settings.constant)
     return np.asarray(settings.join * (arcs[:, -1] - arcs[:, -2]))

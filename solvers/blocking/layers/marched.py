@@ -16,8 +16,7 @@ from meshonet.solvers.hyperbolic.settings import RISING, MarchSettings
 
 GAP_PART = 0.38  # largest fraction of the gap in front of a wall that its layers fill
 SLOPE = 0.25  # largest change of the thickness of layers per length along the wall
-MARCH_GROWTH = 1.2
-"""Ratio of neighbouring levels of the march; the layers are redistributed along its lines later."""
+MARCH_GROWTH = 1.2  # ratio of neighbouring levels of the march; layers are redistributed along lines later
 THINNER = 0.6  # factor on the thickness after every march has folded
 TRIES = 4  # thicknesses, the last a fifth of the first
 BLUNT = "{base} 0.005"  # option that opens the sharp edge of an airfoil
@@ -86,7 +85,7 @@ def fitted(
 def check_room(room: Floats, first: float, place: Callable[[int], str]) -> None:
     """Raise InputError if `room` (n,) is too small for first cells of height `first`.
 
-    `room` is `GAP_PART` times the gap between walls. `place` returns the position of a column as text.
+    `room` is `GAP_PART` times the gap at n points of a wall. `place` returns a point's position as text.
     """
     k = int(np.argmin(room))
     if room[k] < FEWEST_CELLS * first:

@@ -18,8 +18,7 @@ from meshonet.solvers.blocking.layers.attach import Rows
 from meshonet.solvers.layers.even_line import evened_steps
 from meshonet.solvers.layers.layer_settings import LayerSettings
 
-FAR = 4.0
-"""Distance of an outer loop, relative to the circle around all bodies, above which it counts as distant."""
+FAR = 4.0  # distance of an outer loop, in radii of the circle around all bodies, from which on it is distant
 NEAR = 2.2  # radius of the circle that replaces it, relative to the circle around all bodies
 _POINTS = 240  # of the circle, a spline through them
 _EVEN = 1.1  # largest ratio of the first cells of neighbouring rows
@@ -46,7 +45,7 @@ class NearField:
 
     @classmethod
     def of(cls, domain: Domain) -> Self | None:
-        """Return the near field of a domain; None unless its outer loop is smooth, far and star-shaped."""
+        """Return the region near bodies; None unless the outer loop is distant, smooth and star-shaped."""
         outer = domain.loops[0]
         if len(domain.loops) < 2 or outer.corners:
             return None

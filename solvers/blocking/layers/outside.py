@@ -22,8 +22,7 @@ from meshonet.solvers.stages import Timings
 PRICE = 0.08  # price of a block in degrees of mean deviation; a tube bank gets 70 blocks, without a price 91
 TURN = np.radians(20.0)  # largest angle by which a wall turns along one cell of the quad mesh
 CELLS_IN_GAP = 2.5  # so that at least two quads cross every gap
-CELLS_AROUND, CELLS_ACROSS = 24.0, 30.0
-"""Smallest numbers of cells around a loop, and across a domain far from all features."""
+CELLS_AROUND, CELLS_ACROSS = 24.0, 30.0  # smallest, around a loop, and across a domain far from features
 GRADING = 0.2  # growth of sizes along walls, and with the distance from walls, per length
 CLOSE = "use a larger {growth}, a first cell half or twice as high, or open the gap there"
 """Remedy for walls, or fronts of layers, that nearly touch."""
@@ -63,10 +62,10 @@ def found_outside(
 
 
 def taken_outside(layout: Layout, rest: Domain, fronts: Collection[int]) -> Layout:
-    """Return `layout` transferred to the domain `rest`, whose loops `fronts` are the outer edges of layers.
+    """Return `layout` transferred to the domain `rest`; its loops `fronts` are the outer edges of layers.
 
-    Raises InputError if `layout` was made for layers around loops other than `fronts`. Layers around loops
-    without sharp corners may be missing in it. See `carried_over` for other reasons.
+    Raises InputError if `layout` has layers around a loop not in `fronts`, or none around a loop in `fronts`
+    that has sharp corners. See `carried_over` for other reasons.
     """
     taken = carried_over(layout, rest)
     places = taken.mesh.places

@@ -17,10 +17,8 @@ from meshonet.solvers.blocking.layers.wall_rows import WallRows
 from meshonet.solvers.layers.layer_settings import LayerSettings, exact, spaced
 
 GROWING_COLUMNS = 75  # percentage of the columns of a row that the layers must fill without growing too fast
-SHORT_COLUMNS = 20
-"""Percentage of columns that may be too short for layers; cells there become lower away from the wall."""
-OPENS = 0.15
-"""Distance behind a sharp edge, over the length of its loop, within which the first cells of a wake grow."""
+SHORT_COLUMNS = 20  # percentage that may be too short for layers; cells there become lower away from the wall
+OPENS = 0.15  # distance behind a sharp edge, over the loop's length, within which first cells of a wake grow
 _STEPS = 50  # of bisection, to round-off
 
 
@@ -71,8 +69,9 @@ def with_layers(layout: Layout, rows: WallRows, settings: Sequence[LayerSettings
 def held_nodes(layout: Layout, rows: WallRows, settings: LayerSettings, sharp: int) -> tuple[Bools, Indices]:
     """Return a mask (n,) of the fixed nodes in rows of layers, and pairs (k, 2) of nodes that move together.
 
-    Each pair is a wall node and a node of the first cells on the same line. Such nodes are fixed, instead of
-    being a pair, at corners, at periodic sides, and in the first `sharp` rows, which go around sharp edges.
+    A pair is a wall node and a node on the grid line from there, at the top of a cell of first-cell height.
+    Both are fixed instead at corners, at periodic sides, and in the rows around sharp edges. These rows
+    come first; their number is `sharp`.
     """
     mesh, cells = layout.mesh, settings.constant + 1
     held, pairs = np.zeros(len(mesh.nodes), dtype=bool), []

@@ -78,7 +78,7 @@ class Ring:
 
     @cached_property
     def along(self) -> Measures:
-        """Lengths along outer edge, wall, and nodes next to the wall, by position on the outer edge."""
+        """Arc lengths of outer edge, wall and grid line next to it, as functions of position on the first."""
         n = len(self.arcs)
         index = np.arange(FINER * n + 1) / FINER
         knots = np.append(self.front.curve.knots, self.front.length)

@@ -22,12 +22,10 @@ from meshonet.solvers.refinement.size_metric import SizeMetric
 TURN = np.radians(3.5)  # largest angle by which a wall turns along one cell, for the default number of cells
 CELLS_IN_GAP = 15.0  # smallest ratio of the gap in front of a wall to the length of cells along the wall
 ALONG = 0.2  # growth of sizes along walls per length
-UNEVEN = 2.0
-"""Largest ratio of the thickest to the thinnest layers of a loop, which have the same number of cells."""
+UNEVEN = 2.0  # largest ratio of the thickest to the thinnest layers of a loop, which have as many cells
 THINNEST = 8.0  # smallest thickness of layers in first cells
 SPREAD = 0.1  # growth of the thickness of layers along a wake per distance from the sharp edge
-AROUND_CORNER = 2.5
-"""Ratio of arc length to distance up to which a point of the same wall is around a corner: no gap."""
+AROUND_CORNER = 2.5  # ratio of arc length to distance up to which a wall point is around a corner: no gap
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +97,7 @@ class RowSizes:
             check_room(room, float(first), lambda k: place(self.loop, self.arcs[k]))
 
     def metric(self, scale: float, settings: LayerSettings) -> SizeMetric:
-        """Return target sizes of cells beyond the layers; `scale` multiplies lengths along the wall."""
+        """Return target sizes of cells beyond the layers; cells at the wall are `scale` * `length` long."""
         on, along = self.on, np.maximum(scale * self.length, self.first)
         thick, normals = self.thickness(scale, settings), turned_left(self.loop.tangent(self.arcs))
         across = np.minimum(last_layers(thick, self.rows(scale, settings), settings, self.first), along)

@@ -38,10 +38,8 @@ from meshonet.solvers.layers.layer_settings import LayerSettings
 from meshonet.solvers.refinement.chords import Chords
 from meshonet.solvers.refinement.size_metric import SizeMetric
 
-INNER_THICKNESS = 0.075
-"""Thickness of layers inside an outer loop in hydraulic diameters: four times area over perimeter."""
-MOST_OPTIMISED = 4000
-"""Largest number of cells that are optimised directly; finer grids are splines through these."""
+INNER_THICKNESS = 0.075  # of layers inside an outer loop, in hydraulic diameters: 4 * area / perimeter
+MOST_OPTIMISED = 4000  # cells that are optimised directly; finer grids are splines through these
 ROWS = 3  # number of cells across a row of layers during the optimisation
 _MARCHES = 4  # largest number of marches of rings that are too close to each other
 _BISECTIONS = 14  # of a range of 240 to 1: the scale to 0.03 %
@@ -58,8 +56,7 @@ class WallLayers:
     settings: LayerSettings
     stretches: tuple[Stretch, ...] = ()  # parts of loops whose layers are rows of blocks of the layout
     sharp: tuple[int, ...] = ()  # indices of loops with rows of blocks around them and along their wakes
-    sizes: Mapping[int, RowSizes] = field(default_factory=dict)
-    """Cell sizes at rows of blocks, by the index of the loop."""
+    sizes: Mapping[int, RowSizes] = field(default_factory=dict)  # at rows of blocks, by index of the loop
 
     @classmethod
     def of(
@@ -68,9 +65,9 @@ class WallLayers:
     ) -> Self:  # fmt: skip
         """Return the layers of a domain.
 
-        Layers around `loops` (indices) are marched. Layers along `stretches` (parts of loops) are rows of
-        blocks. So are those around the loops `sharp` (indices) and their wakes; these loops have a sharp
-        edge. Raises InputError if there is too little room, or if layers fold.
+        Layers around `loops` (indices) are marched. Layers along `stretches` (parts of loops) and around the
+        loops `sharp` (indices) are rows of blocks. The latter loops have a sharp edge; their rows continue on
+        both sides of the wake. Raises InputError if there is too little room, or if layers fold.
         """
         rings = rings_around(domain, loops, settings)
         numbers = sorted({*sharp, *(stretch.loop for stretch in stretches)})
@@ -143,8 +140,8 @@ class WallLayers:
     ) -> SizeMetric:
         """Return the target cell sizes outside the layers.
 
-        Next to layers, they are `scale` times the cell lengths along the wall. If `size`, the largest size,
-        is given, the scale follows from it. `wakes` has nodes (k, 2) of wakes, by the index of the loop.
+        Next to layers, they are `scale` times the cell lengths along the wall. `scale` is ignored if `size`,
+        the largest cell size, is given. `wakes` has nodes (k, 2) of wakes, by the index of the loop.
         """
         scale = 1.0 if size else scale
         parts = [sizes.metric(scale, self.settings) for sizes in self.sizes.values()]
@@ -163,7 +160,7 @@ class WallLayers:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """By loop index: arc lengths along which nodes are moved so that steps between them are even."""
+        """Arc lengths along loops, by index of the loop; they should increase evenly from node to node."""
         measures = {k: ring.along for k, ring in self.rings.items()}
         if self.near is not None:
             ends = np.array([0.0, self.near.circle.length])

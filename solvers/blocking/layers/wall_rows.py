@@ -37,9 +37,10 @@ class WallRows:
     Parameters
     ----------
     loops : for each row, the index of the loop along which it goes.
-    across : (b, 2) for each block, the row (index) whose layers are stacked from south to north, and the row
-        whose layers are stacked from west to east; -1 for none. Refinement does not change these indices.
-    back : (b, 2) whether the wall (or wake) of these rows is north, or east, of the block.
+    across : (b, 2) for each block, the index of the row that its grid lines from south to north cross, and
+        of the row that those from west to east cross; -1 for none. Refinement does not change these indices.
+    back : (b, 2) whether the block's north side is on the wall (or wake) of the first of these rows, and its
+        east side on that of the second.
     """
 
     loops: tuple[int, ...]
@@ -54,7 +55,7 @@ class WallRows:
         return row
 
     def columns(self, layout: Layout, row: int) -> list[Indices]:
-        """Return, for each block of a row, the nodes (k, n) of k lines across it, from the wall or wake."""
+        """Return, for each block of a row, the nodes (k, n) of k lines across the row, from wall or wake."""
         tables = []
         for block, direction in zip(*np.nonzero(self.across == row), strict=True):
             table = layout.blocks[block].T if direction else layout.blocks[block]
@@ -71,7 +72,7 @@ class WallRows:
         return float(np.abs(along.growth(complex_of(layout.mesh.nodes))).max())
 
     def wakes(self, layout: Layout) -> dict[int, Floats]:
-        """Return the nodes (k, 2) of each wake with layers, from the sharp edge on, by index of the loop."""
+        """Return the nodes (k, 2) of wakes behind sharp edges, along which layers continue, by loop index."""
         mesh, lines = layout.mesh, {}
         for row, loop in enumerate(self.loops):
             base = distinct(np.concatenate([table[:, 0] for table in self.columns(layout, row)]))

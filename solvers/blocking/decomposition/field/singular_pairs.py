@@ -20,8 +20,7 @@ from meshonet.solvers.blocking.decomposition.surface.laplacian import Laplacian
 from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, Triangulation
 from meshonet.solvers.sparse import Factor
 
-CORE = 1.0
-"""Radius of cores relative to the size of triangles; with 1, it is the energy that triangles resolve."""
+CORE = 1.0  # radius of cores over the size of triangles; with 1, it is the energy that triangles resolve
 MOST_PAIRS = 64  # largest number of pairs that are examined, the nearest ones
 _TURN = 2.0 * np.pi  # a full turn, radians
 

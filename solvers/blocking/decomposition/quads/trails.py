@@ -38,13 +38,14 @@ class Trails:
         return float(self.length[self.first[trail + 1] + trail])
 
     def at_vertex(self, vertex: int) -> tuple[int, float]:
-        """Return the index of the boundary line through a vertex, and its mapped length up to this vertex."""
+        """Return the boundary line (index) through a vertex, and its length up to there in the u-v plane."""
         return self._on_piece(self.vertex == vertex, 0.0)
 
     def at_edge(self, face: int, edge: int, part: float) -> tuple[int, float]:
-        """Return the index of the boundary line along an edge, and the line's mapped length up to a point.
+        """Return the boundary line (index) along an edge, and its length up to a point of the edge.
 
-        The edge is number `edge` of triangle `face`. The point is at the fraction `part` of the edge.
+        The point is at the fraction `part` of edge number `edge` of triangle `face`. Lengths are measured in
+        the plane u, v to which the triangulation is mapped.
         """
         return self._on_piece((self.face == face) & (self.edge == edge), part)
 
@@ -76,7 +77,7 @@ class Trails:
 
 
 def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, count: int) -> Trails:
-    """Return the `Trails` of `count` rays, from the arrays `pieces` and `lines` that `trace_rays` returns."""
+    """Return `count` lines of constant u or v of a map, from the straight pieces given by `trace_rays`."""
     order = np.argsort(pieces[:, 0], kind="stable")
     pieces, lines = pieces[order], lines[order]
     many = np.bincount(pieces[:, 0], minlength=count)

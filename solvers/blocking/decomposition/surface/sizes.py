@@ -11,8 +11,7 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.polygon.corners import angle_between
 from meshonet.kernels._native import wall_gaps, wall_growth
 
-GROWTH = 0.35
-"""Largest change of the size per length; 0.15 and 0.7 give 22 domains 450 and 455 blocks, not 431."""
+GROWTH = 0.35  # largest change of the size per length; 0.15 and 0.7 give 22 domains 450, 455 blocks, not 431
 PER_GAP = 3.5  # edges across a gap; half and twice as many give 22 domains 459 and 423 blocks, not 431
 PER_RADIUS = 0.45
 """Edge length over the radius of curvature; half and twice as much give 446 and 428 blocks, not 431."""

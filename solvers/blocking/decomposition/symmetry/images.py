@@ -36,7 +36,7 @@ def node_images(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> list
 
 
 def agree(images: Images) -> bool:
-    """Return whether mirror images of nodes fit together: two successive reflections must be a rotation."""
+    """Return whether images of nodes in several mirrors, found for one mirror at a time, are consistent."""
     if len(images) < 2:
         return True
     (_, one), (_, other) = images[:2]
@@ -52,7 +52,7 @@ def made_symmetric(mesh: QuadMesh, images: Images | None = None) -> QuadMesh:
     """Return the mesh with each node at the mean of itself and its mirror images.
 
     `images` has the images of the nodes in each mirror, by default in all mirrors of the mesh. Only the first
-    mirror is used if two reflections, one after the other, are not a rotation. Corners do not move.
+    mirror is used if images in different mirrors contradict each other. Corners do not move.
     """
     images = images_of(mesh) if images is None else images
     if not agree(images):

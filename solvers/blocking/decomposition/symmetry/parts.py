@@ -1,7 +1,7 @@
 """One part of a symmetric domain, between mirror lines; the mesh of this part and of its images.
 
 It is the half on the left of a mirror, a quarter between two mirrors at right angles, or a sector from a
-mirror to the next but one, whose rotated copies fit together. Rays become grid lines of the mesh.
+mirror to the next but one. The sides of the part on mirrors become grid lines of the mesh.
 """
 
 from collections.abc import Sequence
@@ -21,22 +21,21 @@ from meshonet.solvers.blocking.decomposition.quads.padding import Span
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror
 
 _NEAR = 1e-6  # positions nearer than this fraction of a loop, or of the extent, are the same
-_SHARPEST = 52.5
-"""Smallest angle of half a corner in degrees: a corner of 90 degrees is not cut, one of 120 degrees is."""
+_SHARPEST = 52.5  # degrees, of half a corner: a corner of 90 degrees is not cut, one of 120 degrees is
 Ray = tuple[Mirror, Floats]  # a mirror, and the direction (2,) of the ray on it, from the centre of the part
 
 
 @dataclass(frozen=True, eq=False)
 class LoopPart:
-    """A part of a boundary loop from one mirror line to another, or only the point where these lines meet."""
+    """A piece of the outline of a sector between mirrors: part of a boundary loop, or the sector's tip."""
 
-    loop: int  # index of the loop; -1 for the centre
+    loop: int  # index of the loop; -1 for the tip, the point where the mirror lines meet
     arcs: Floats  # (n,) ascending arc lengths
     points: Floats  # (n, 2) points at these arc lengths
     corners: Indices  # indices of the points that are corners, including those on mirror lines
     breaks: Indices  # indices of the points at which the tangent may jump
     straight: Bools
-    """(n,) whether the line to the next point is straight, as it is from the last point along a mirror."""
+    """(n,) whether the outline is straight up to the next point; from the last point it follows a mirror."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +62,10 @@ class DomainPart:
 
 
 def spans_between(loop: Loop) -> list[Span]:
-    """Return the parts of the outer loop whose ends are corners of one cell; corners inside have two."""
+    """Return the parts of the outer loop that begin and end at corners with a single cell.
+
+    All corners in between have two cells. Each part is the loop's index 0, and the arc lengths of its ends.
+    """
     corners = zip(loop.corner_arcs.tolist(), loop.corner_cells.tolist(), strict=True)
     turns = [(arc, cells) for arc, cells in corners if cells != 2]
     pairs = pairwise([*turns, *((arc + loop.length, cells) for arc, cells in turns[:1])])
@@ -86,9 +88,10 @@ def part_of(domain: Domain, mirrors: Sequence[Mirror]) -> DomainPart:
 
 
 def sector_of(domain: Domain, mirrors: Sequence[Mirror], start: int) -> DomainPart:
-    """Return the sector from mirror line `start` to the next but one, whose rotated copies fit together.
+    """Return a sector of a domain; copies of the sector, rotated about the centre, make up the domain.
 
-    `mirrors` are sorted by angle. Raises SolverError if one cuts a sharp corner or they meet off the domain.
+    It reaches from mirror line `start` to the next but one in `mirrors`, which are sorted by angle. Raises
+    SolverError if a mirror cuts a sharp corner, or if the mirrors meet outside the domain.
     """
     count = len(mirrors)
     first, middle, last = (mirrors[k % count] for k in range(start, start + 3))

@@ -27,8 +27,7 @@ from meshonet.solvers.refinement.chords import Chords
 from meshonet.solvers.refinement.refine import refine
 
 WORTH = 2.0  # largest increase of the score without prices (degrees) that symmetric blocks may have
-AT_CENTRE = 6
-"""Largest number of quads around the centre of three or more mirrors; or the number of mirrors, if larger."""
+AT_CENTRE = 6  # largest number of quads around the centre of mirrors, or the number of mirrors if larger
 EVEN = 4  # number of cells along the sides of all blocks in the search for images
 FindPart = Callable[[DomainPart], QuadMesh]  # returns the mesh of a part of a domain
 Optimised = Callable[[QuadMesh], QuadMesh]
@@ -44,8 +43,8 @@ def symmetric_blocks(
     """Return symmetric blocks of the domain of `blocks`, or `blocks` if symmetric blocks are clearly worse.
 
     A lower `score` is better; that of symmetric blocks may be higher by `worth`. If `blocks` are symmetric,
-    they are replaced only by better and not more numerous ones, made by mirroring a part of the domain.
-    `find` returns the mesh of such a part. `unsized` returns a mesh without prescribed lengths, tried last.
+    they are kept, unless mirroring a part of the domain gives better blocks, and not more of them. `find`
+    returns the mesh of such a part. `unsized` returns a mesh without prescribed cell lengths, tried last.
     """
     mesh, every = blocks.mesh, mirrors_of(blocks.mesh.domain)
     pair = every[:1] if len(every) % 2 else every[:: max(len(every) // 2, 1)]
