@@ -67,7 +67,7 @@ class Format:
     suffix_options: Mapping[str, str] = field(default_factory=dict)
 
     def file_at(self, path: str) -> str:
-        """Return the file to write for a user's `path`; if the format fills folders, `path` may be one.
+        """Return the file to write for a user's `path`, which may be a folder if the format writes a folder.
 
         >>> case = Format("openfoam", (".foam",), "", fills_folder=True)
         >>> case.file_at("runs/first"), case.file_at("runs/first/case.foam")

@@ -54,7 +54,7 @@ def _nodes(row: Table) -> int | None:
 
 
 def cant(data: Table, default: Cant) -> Cant:
-    """Return the angle in degrees by which a section is turned about x; ``panel`` means: by the dihedral."""
+    """Return the degrees by which a section is turned about x, or ``panel`` for the wing's dihedral there."""
     if "cant" not in data.data or data.data["cant"] == "panel":
         return "panel" if "cant" in data.data else default
     degrees = data.number("cant")
@@ -109,7 +109,7 @@ def along(row: Table, direct: str, angle: str, z: float, before: list[Section]) 
 def section_shape(row: Table, folder: Path) -> Airfoil | Outline:
     """Return the shape of a section from its table; paths are relative to `folder`.
 
-    Raises InputError unless exactly one of the keys `airfoil` and `outline` is given, and names one shape.
+    Raises InputError: not exactly one of the keys `airfoil` and `outline`; a file without exactly one shape.
     """
     keys = [key for key in ("airfoil", "outline") if key in row.data]
     remedy = "name one file, or a designation such as naca:2412"

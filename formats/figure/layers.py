@@ -170,7 +170,7 @@ def body(grid: Grid) -> Floats:
 def reduced(
     by: np.ufunc, values: NDArray[Any], columns: NDArray[np.intp], rows: NDArray[np.intp]
 ) -> NDArray[Any]:
-    """Return cell values, combined by `by` in rectangles whose index bounds are `columns` and `rows`."""
+    """Return cell values, merged by `by` in rectangles between successive grid lines `columns` and `rows`."""
     joined: NDArray[Any] = by.reduceat(by.reduceat(values, columns[:-1], axis=0), rows[:-1], axis=1)
     return joined
 

@@ -22,7 +22,7 @@ _FORWARD = 0.004  # shift of outlines towards the viewer, relative to the size o
 
 
 def steps_of(sheet: CellSheet, axes: Floats, pixels: float, every: int | None) -> tuple[int, int]:
-    """Return how many cells along each direction of a layer are drawn as one quadrilateral."""
+    """Return how many cells, along each direction of the surface `sheet`, are drawn as one quadrilateral."""
     if every:
         return every, every
     flat = sheet.nodes @ axes[:2].T * pixels

@@ -127,7 +127,7 @@ class Writer:
             self._file.create_dataset("failed", data=list(failed), dtype=h5py.string_dtype())
 
     def close(self) -> None:
-        """Write the remaining samples, and as attributes the provenance entries that all grids share."""
+        """Write the remaining samples, and the provenance common to all grids as attributes of the file."""
         self.flush()
         self._file.attrs.update({_attribute(name): fact for name, fact in self._common.items()})
 

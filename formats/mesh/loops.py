@@ -71,7 +71,7 @@ def _followed(flat: list[int], twin: list[int], names: list[str]) -> list[EdgeLo
 
 
 def with_loop_names(grid: Grid) -> Grid:
-    """Return a planar grid whose outer edges are patches: ``outer``, or ``body``, ``body2`` ... on bodies."""
+    """Return a planar grid whose unnamed boundaries are patches ``outer``, ``body``, ``body2`` and so on."""
     outer = grid.outer_patches()
     unnamed = [
         p

@@ -36,7 +36,7 @@ def surfaces_wanted() -> Iterator[None]:
 class IndexedNodes:
     """Nodes (ni, nj, 2 or 3) or (ni, nj, nk, 3) of a block, and how its directions relate to the file's.
 
-    Their direction k is direction ``axes[k]`` (0 to 2) of the file; if `reversed`, i has the opposite order.
+    Direction number d of `nodes` is number ``axes[d]`` (0 to 2) in the file. If `reversed`, i runs backward.
     """
 
     nodes: Floats
@@ -57,8 +57,8 @@ class _Slice(NamedTuple):
 def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> list[IndexedNodes]:
     """Return the nodes of each block of a file, given as coordinates x, y[, z] of shape (n1, n2, n3) each.
 
-    Blocks are planar if each is one layer of nodes, all in the same plane of constant x, y or z; or if each
-    is two equal layers, all in the same two such planes. This coordinate is then left out. Otherwise, or
+    Blocks are planar if all nodes lie in one plane of constant x, y or z. They are also planar if each block
+    has the same nodes twice, once in each of two such planes. This coordinate is then left out. Otherwise, or
     inside ``with surfaces_wanted()``, blocks of one layer are surface patches, others are volumes.
     Left-handed planar blocks and volumes are reversed along i. `places` are names of blocks in messages.
     Raises InputError if a block has no cells.

@@ -79,8 +79,8 @@ def grids_of_file(
 ) -> Iterator[Grid]:
     """Yield the grids of a file, given its blocks, its named faces and its pairs of connected faces.
 
-    Blocks that touch form one grid, and so do all surface patches. A single grid is called `name`. Of several
-    grids, one that is a single named block has the block's name, others have `name` with a number. Unnamed
+    Blocks that touch form one grid, and so do all surface patches. A single grid is called `name`. If there
+    are several, a grid of one named block gets the block's name, any other `name` with a number. Unnamed
     outer edges of planar blocks get names. Raises InputError: no cells, unusable nodes, unmatched interfaces.
     """
     if blocks:

@@ -19,7 +19,8 @@ _SIDES: dict[tuple[int, int], Side] = {place: side for side, place in PLACES.ite
 class FaceWindow(NamedTuple):
     """A rectangle of nodes on a face of a block, given by the indices, from 0, of two opposite corners.
 
-    In connections, the last index is below the first where the direction is reversed.
+    If two rectangles are connected, their `first` corners coincide, and so do their `last` corners. So an
+    index may be lower in `last` than in `first`.
     """
 
     block: int

@@ -145,7 +145,7 @@ class LoftedBody(Body):
         return radius * flatness, radius * (2.0 - flatness), self._middle(x)
 
     def shape(self, s: Floats, theta: Floats) -> Floats:
-        """Return ratios (n,) of the section's radius to an ellipse's, at arc lengths and angles (n,)."""
+        """Return radii (n,) of sections at (s, theta), relative to the ellipse of equal width and height."""
         arcs = self.arcs
         before = np.clip(np.searchsorted(arcs, s, side="right") - 1, 0, len(arcs) - 2)
         h = arcs[before + 1] - arcs[before]

@@ -51,7 +51,7 @@ class SurfaceWing:
 
     @classmethod
     def ending(cls, strips: tuple[Floats, ...], name: str = "wing") -> Self:
-        """Return the wing with these `strips` (see the class); where the tip becomes thin, it is cut off.
+        """Return the wing with these `strips` (see the class), cut off where it becomes thin near its tip.
 
         Raises InputError if the wing has no thickness.
         """
@@ -75,7 +75,7 @@ class SurfaceWing:
 
     @property
     def z(self) -> Floats:
-        """Equally spaced z (n,) from root to tip. All lines along the span begin at or below the first z."""
+        """Equally spaced z (n,) along the span, from the largest z at the root to the z of the tip."""
         begin = max(float(strip[0, :, 2].max()) for strip in self.strips)
         return np.linspace(begin, self.height, _LEVELS)
 
@@ -97,14 +97,14 @@ class SurfaceWing:
 
     @cached_property
     def arcs(self) -> Floats:
-        """Arc lengths (n,) in chords across the n spanwise strips of the surface, halfway to the tip."""
+        """Arc lengths (n,), in chords, of the section halfway to the tip in each of the n spanwise strips."""
         z = self.z[[_LEVELS // 2]]
         lengths = [float(norms(np.diff(at_heights(strip, z)[0], axis=0)).sum()) for strip in self.strips]
         return np.array(lengths) / self.sizes(z)[0]
 
     @cached_property
     def nose(self) -> float:
-        """Place of the nose around the section, a number for `line`; 0 is the upper trailing edge."""
+        """Place of the nose around the section; 1.25 is a quarter across the second spanwise strip."""
         z = self.z[[_LEVELS // 2]]
         rows = [at_heights(strip, z)[0] for strip in self.strips]
         edge = 0.5 * (rows[0][0] + rows[-1][-1])
@@ -138,7 +138,7 @@ class SurfaceWing:
         return float(np.interp(place, np.arange(len(self.strips) + 1), self._bounds))
 
     def places(self, arcs: Floats) -> Floats:
-        """Return places (n,), as in `line`, at arc lengths `arcs` (n,) in chords; the inverse of `arc`."""
+        """Return places (n,) around the section at arc lengths (n,) in chords, as in `line` and `arc`."""
         return np.interp(arcs, self._bounds, np.arange(len(self.strips) + 1))
 
     @property

@@ -34,9 +34,8 @@ def wing_strips(patches: Sequence[Floats], name: str) -> tuple[tuple[Floats, ...
     """Return strips (stations, n, 3) of nodes from root to tip, and indices of patches that close the tip.
 
     `patches` (ni, nj, 3) form the surface of a wing, where z >= 0. Patches on a blunt trailing edge are left
-    out. `name` is used in messages.
-
-    Raises InputError: patches that are not next to each other around the wing, or not along the span.
+    out. `name` is used in messages. Raises InputError: a gap between patches around the wing; patches without
+    a common part of the span; patches that do not end at the trailing edge.
     """
     turned = [_from_root(patch) for patch in patches]
     spans = np.array([float((nodes[-1, :, 2] - nodes[0, :, 2]).mean()) for nodes in turned])

@@ -103,7 +103,7 @@ class Connection:
         return f"the connection of {own} of block {self.block} to {donor} of block {self.donor}"
 
     def stretches(self, block: int) -> list[tuple[Side, int, int]]:
-        """Return the connected parts of a planar block's sides: side, first node and last node of each."""
+        """Return side, first and last node of each part of a planar block's sides that is connected."""
         return [(side, *nodes[0]) for number, side, nodes in self.ends if number == block]
 
 

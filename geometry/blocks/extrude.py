@@ -60,9 +60,8 @@ def thickened(
 
     `nodes` has an array (ni, nj, nk, 3) of finite nodes for each block. Patches and connections extend over
     all planes of nodes. `ends` has the name and kind of the patch on the first plane, then on the last. If it
-    is None, these planes are connected: `motion` moves the first plane onto the last; else they coincide.
-
-    Raises InputError: blocks that are not planar; nodes that differ where blocks are connected.
+    is None, these planes are connected. They coincide, unless a `motion` from first to last is given. Raises
+    InputError: blocks that are not planar; nodes that differ where blocks are connected.
     """
     planar(grid)
     planes = nodes[0].shape[2]

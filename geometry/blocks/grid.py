@@ -50,7 +50,7 @@ class Origin:
     """Where a sample of a dataset comes from.
 
     `parameters` are shape parameters. `split` is ``train``, ``test`` or empty. `title` is the shape's own
-    name if the sample is called after its file, else empty.
+    name if the sample has a different one, such as that of a file; else it is empty.
     """
 
     parameters: tuple[tuple[str, float], ...] = ()
@@ -239,8 +239,9 @@ class Grid(Connected):
     def walls(self) -> list[Patch]:
         """Return the walls: patches of kind wall and, in some grids of one block, patches of unknown kind.
 
-        In O and C grids, patches of unknown kind on the body are walls. In a four-sided grid without a patch
-        of kind wall, those on south and north are. The default kind of a patch follows from its name.
+        In O and C grids, patches of unknown kind on the body are walls. In a four-sided grid where no patch
+        has the kind wall, patches of unknown kind on south and north are walls. The default kind of a patch
+        follows from its name.
         """
         outer = self.outer_patches()
         body = ("south",) if self.around_body else ()

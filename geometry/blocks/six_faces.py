@@ -87,7 +87,7 @@ class SixFaces:
         return edge_of(getattr(self, side), side, second)
 
     def steps_at_edge(self, side: Side, second: Side) -> Floats:
-        """Return vectors (n, 3), along rising index, between `side`'s edge with `second` and the next row."""
+        """Return vectors (n, 3) towards rising index across the cells of face `side` that touch `second`."""
         axis, end = PLACES[second]
         rows = np.moveaxis(getattr(self, side), axis - (axis > PLACES[side][0]), 0)
         return np.asarray(rows[1] - rows[0] if end == 0 else rows[-1] - rows[-2])

@@ -161,13 +161,12 @@ def _coarser_patches(patches: tuple[Patch, ...], k: int) -> tuple[Patch, ...]:
 
 
 def normalised(grid: Grid) -> Grid:
-    """Return `grid` moved and scaled to unit size and, around a body, rotated.
+    """Return `grid` moved and scaled to unit size. A grid around a body is also rotated.
 
     In an O or C grid the trailing edge, where xi begins on the body, is moved to (1, 0). The body's node that
     is farthest from the trailing edge is moved to (0, 0). In any other grid the lower left corner of the
-    bounding box is moved to the origin, and the longest side of the box gets length 1.
-
-    Raises InputError: the body has no length.
+    bounding box is moved to the origin, and the longest side of the box gets length 1. Raises InputError: the
+    body has no length.
     """
     if not grid.around_body:
         low, high = grid.box

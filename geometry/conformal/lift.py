@@ -51,10 +51,10 @@ class Corner:
 class Lift:
     """The conformal map from the plane z around a body to a strip w = psi + i phi of period 2 pi.
 
-    Joukowski's map z = centre + quarter (zeta + 1/zeta) comes first; `quarter` is a quarter of the vector (a
-    complex number) along a slit in the body, and `centre` its middle. Then the maps `corners` straighten
-    corners. `pole` is the centroid of the wall after all these maps. `phase` is subtracted from phi, so that
-    the first wall node is at 0. Attributes are numbers or torch tensors.
+    Joukowski's map z = centre + quarter (zeta + 1/zeta) comes first. It maps a slit in the body to a circle.
+    `centre` is the middle of the slit, and `quarter` a quarter of the vector from end to end of the slit.
+    Then the maps `corners` straighten corners. `pole` is the centroid of the wall after all these maps.
+    `phase` is subtracted from phi, so that the first wall node is at 0. Attributes may be torch tensors.
     """
 
     centre: Any
@@ -85,10 +85,9 @@ def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, 
     """Return the conformal map around a body, the mapped wall (n,), and the indices of the body's corners.
 
     `wall` (n,) runs counter-clockwise from the trailing edge, without its repeated first node. The corners of
-    a blunt trailing edge are straightened one after another, with `swap` in the opposite order. Two bodies
-    that are mirror images have mirrored results if `swap` is set for one of them.
-
-    Raises InputError: fewer than 8 nodes, or a wall that does not wind once around its middle.
+    a blunt trailing edge are straightened one after another; `swap` reverses this order. Two bodies that are
+    mirror images have mirrored results if `swap` is set for one of them. Raises InputError: fewer than 8
+    nodes; a wall that does not wind once around its middle.
     """
     if len(wall) < 8:
         raise InputError(f"the wall has {len(wall)} nodes", "use at least 8")

@@ -40,8 +40,8 @@ def conformal_knots(
     Parameters
     ----------
     marks : (m,) ascending arc lengths in (0, length) at which there must be nodes.
-    at : (m,) indices of the nodes at `marks`; if None, they are multiples of one of the `steps`.
-    steps : numbers of cells, descending; the largest that fits between node 0 and the nearest mark is used.
+    at : (m,) indices of the nodes at `marks`; if None, they are multiples of one of the numbers `steps`.
+    steps : descending; the first that is at most the number of cells from node 0 to the nearest mark is used.
 
     Raises InputError: the conformal angle does not increase along the curve; no convergence.
     """

@@ -36,7 +36,7 @@ def piece_at(x: Floats, at: Floats, dimension: int) -> tuple[Indices, Floats, Fl
     """Return the interval between knots `x` (n,) in which each of `at` (m,) is, and where in the interval.
 
     The results are the index (m,) of the interval, the position as a fraction of the interval, and the
-    interval's length. The last two have `dimension` axes in all: (m, 1, ...).
+    interval's length. Position and length are arrays (m, 1, ..., 1), each with `dimension` axes.
     """
     i = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(x) - 2)
     h, shape = x[i + 1] - x[i], (*at.shape, *(1,) * (dimension - 1))

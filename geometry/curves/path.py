@@ -127,8 +127,8 @@ class Bend:
 class PiecedPath:
     """A path of `pieces` joined without kinks, from the point `start` (3,) in a `direction` (3,).
 
-    The direction `towards` in which an arc bends is made perpendicular to the path where it begins. Raises
-    InputError: no piece; a length or radius that is not positive; a `towards` parallel to the path.
+    The vector `towards` of an arc need not be perpendicular to the path; its part along the path is ignored.
+    Raises InputError: no piece; a length of 0; a negative length or radius; a `towards` parallel to the path.
     """
 
     def __init__(self, pieces: tuple[Bend, ...], start: Floats, direction: Floats) -> None:

@@ -24,8 +24,8 @@ def wall_gaps(domain: Domain, loop: Loop, arcs: Floats) -> Floats:
     """Return distances (n,) from points of a loop, at arc lengths `arcs` (n,), to the nearest wall in front.
 
     A wall of any loop is in front if the direction from the point to it deviates from the inward normal by at
-    most 53 degrees. Without a wall in front, the distance is infinite. At an obtuse corner where two cells of
-    the grid are to meet, grid lines follow both walls, and neither wall is in front of the other.
+    most 53 degrees. Without a wall in front, the distance is infinite. There is one exception: two walls that
+    form an obtuse corner, where two cells of the grid are to meet, are never in front of each other.
     """
     walls, points, along = wall_points(domain.loops), loop.at(arcs), loop.tangent(arcs)
     gaps = gaps_in_front(walls, points, along)

@@ -31,9 +31,9 @@ def lattice_quads(blocks: Sequence[Indices]) -> Indices:
 
 
 def around_body(layout: Layout) -> Layout:
-    """Return a layout of one ring-shaped block with i around the hole, and j from the hole outwards.
+    """Return a layout of one ring-shaped block, turned so that i runs around the hole and j outwards from it.
 
-    The block stays right-handed, so i runs clockwise. Other layouts are returned unchanged.
+    The block stays right-handed, so i runs clockwise. A layout that is no single ring is returned unchanged.
     """
     if len(layout.blocks) != 1:
         return layout

@@ -34,7 +34,7 @@ class Layout:
         Number of rows of cells, counted from the south side, that are layers at a wall; the key is the index
         of the block. Optimisations do not move these rows.
     fronts : tuple of int, optional
-        Indices of loops of the domain that are outer edges of layers; cells of the layers are added later.
+        Indices of boundary loops that are outer edges of layers. The layers are added to the domain later.
     """
 
     mesh: QuadMesh

@@ -48,7 +48,7 @@ def with_tied_sides(mesh: QuadMesh) -> QuadMesh:
 
 
 def matched_nodes(mesh: QuadMesh) -> Floats:
-    """Return the nodes (n, 2); of each two periodic sides, the second becomes exactly the first, shifted."""
+    """Return the nodes (n, 2), moved so that opposite periodic sides differ by exactly the period."""
     nodes, sides = mesh.nodes.copy(), sides_of(mesh)
     for _, first, _ in sides:
         nodes[first] = rounded(nodes[first], mesh.domain)

@@ -151,7 +151,7 @@ class QuadMesh:
         return np.asarray(known[off.argmin(axis=1)])
 
     def beside_partners(self, nodes: Floats) -> Floats:
-        """Return `nodes` (n, 2); each with a periodic partner is put exactly one period from the partner."""
+        """Return `nodes` (n, 2); of two periodic sides, the second is put exactly a period from the first."""
         images = np.flatnonzero(self.places.partner >= 0)
         if images.size and self.domain.periodic:
             nodes = nodes.copy()

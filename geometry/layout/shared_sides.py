@@ -47,7 +47,7 @@ def connection_of(
 
 
 def shared_in_part(lines: list[Line]) -> tuple[list[Connection], list[tuple[Line, int]]]:
-    """Return connections of parts of block sides, and unconnected parts with the index where each begins."""
+    """Return connections of parts of block sides, and unconnected parts with their first index on a side."""
     if not lines:
         return [], []
     edges = np.concatenate([np.sort([nodes[:-1], nodes[1:]], axis=0) for _, _, nodes in lines], axis=1)

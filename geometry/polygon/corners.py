@@ -53,10 +53,10 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
     the polygon is open), and five times as much as at the next points on both sides. So both ends of an
     oblique base (blunt trailing edge) are corners.
 
-    An exception is the round end of a thin body given by few points: it is no corner, even if it turns by up
-    to 155 degrees. Near a round end, the thickness of the body grows like the square root of the distance,
-    near an edge linearly; this tells them apart (`growth_exponent`). In a closed polygon of at most `few`
-    points, which is no sampled curve, all turns of more than 40 degrees are corners, without exception.
+    The coarsely sampled round end of a thin body is no corner, even if it turns by up to 155 degrees. Near a
+    round end, the thickness of the body grows like the square root of the distance, near an edge linearly;
+    this tells them apart (`growth_exponent`). But a closed polygon of at most `few` points is not taken for a
+    sampled curve: all its turns of more than 40 degrees are corners.
     """
     angle = np.abs(turning(points, closed=closed))
     if not angle.max() > KINK:

@@ -27,9 +27,9 @@ def handedness(wall: Complexes, far: Complexes) -> tuple[int, Axis]:
     """Return a sign (1, -1 or 0) that tells a body from its mirror image, and the axis of the mirror.
 
     The body is given by two curves of complex numbers, `wall` (n,) and `far` (n,). The axis runs from the
-    first node of `wall` to the middle between the two nodes farthest from this node. It is returned as a
-    point and the square of its direction, a complex number. The sign is that of the largest deviation of
-    `wall` from symmetry, or of `far` if `wall` is symmetric, or 0 if both are.
+    first node of `wall` to the node of `wall` farthest from it, or to the midpoint of two that are farthest.
+    The axis is returned as a point and the square of its direction, a complex number. The sign is that of the
+    largest deviation of `wall` from symmetry, or of `far` if `wall` is symmetric, or 0 if both are.
     """
     a, b = farthest(wall)
     along = 0.5 * (wall[a] + wall[b]) - wall[0]

@@ -32,8 +32,8 @@ class BlockFigures(BlockCounts):
     """Counts, angles and grid lines of a multi-block grid; `nodes` is the number of distinct nodes.
 
     `deviation` is the difference of corner angles from 90 degrees. At a corner of a volume three angles meet;
-    the largest difference counts. The mean is over all corners. The percentile is over all cells, each with
-    its largest difference.
+    the largest difference counts. The mean is over all corners. The 99th percentile is over all cells; a
+    cell counts with the largest difference at its corners.
     """
 
     nodes: int

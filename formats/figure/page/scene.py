@@ -50,9 +50,9 @@ class Lattice:
 class SceneSheet:
     """A layer of cells to draw: a planar or surface block, a patch of a volume, or a layer inside a volume.
 
-    Its nodes are in array number `lattice` of the page. If `axis` is None, the layer is the whole array; else
-    it has index `node` along direction `axis` of the array. `ranges` are its first and last nodes along its
-    two directions. A layer inside a volume has index `at` along direction `across` (i, j, k) of its block.
+    Its nodes are in array number `lattice` of the page: all of the array if `axis` is None, else those with
+    index `node` along direction `axis`. `ranges` are the first and last nodes along the two directions of the
+    layer. Inside a volume, it lies at index `at` along direction `across` (i, j or k) of the volume's block.
     """
 
     lattice: int
