@@ -56,7 +56,7 @@ class Converged(BatchFunction):
     def backward(ctx: Any, gradient: Tensor, _: Tensor) -> tuple[None, Tensor]:
         """Return None for the equations, and a functional's derivatives with respect to boundary nodes.
 
-        `gradient` are its derivatives with respect to all nodes of the solution. The result has the same
+        `gradient` has those with respect to all nodes of the solution. The result has the same
         shape (batch, 2, ni, nj), and is 0 at inner nodes.
         """
         return None, Adjoint.apply(ctx.equations, *ctx.saved_tensors, gradient)  # type: ignore[no-untyped-call]
