@@ -179,7 +179,7 @@ class BladeSurface:
         return out
 
     def section(self, h: float, u: Floats) -> Floats:
-        """Return s (0 inlet, 1 outlet), theta (m, 2) at height `h` (0 hub, 1 casing); see `at` for `u`."""
+        """Return (m, 2): s (0 inlet, 1 outlet), theta at height `h` (0 hub, 1 casing); see `at` for `u`."""
         return self.crossings(self.lines(u), np.full(len(u), h))
 
     @property

@@ -109,9 +109,9 @@ class BladeProfile:
         return shortest_ways(arcs - edge, length)
 
     def reshaped(self, plane: Floats, heights: Floats) -> Self:
-        """Return the profile through points with coordinates m', theta (n, 2) in `plane`.
+        """Return the profile through other points: their m' and theta are `plane` (n, 2).
 
-        m' is defined in `MeridionalMap`. `heights` (n,) are from 0 at the hub to 1 at the casing.
+        m' is defined in `MeridionalMap`. Their `heights` (n,) are from 0 at the hub to 1 at the casing.
         """
         made = copy(self)
         made.__dict__ = {k: v for k, v in vars(self).items() if k not in ("thickness", "_heights")}
@@ -203,7 +203,7 @@ class BladeProfile:
         return np.asarray(np.mod(self.leading + np.interp(u, *self._stops), self.curve.length))
 
     def corner_places(self) -> Floats:
-        """Return u (c,) of corners: 0 leading, 0.5 trailing edge; modulo 1, so that -0.25 <= u < 0.75."""
+        """Return the coordinate u (c,) of corners, -0.25 to 0.75: 0 leading edge, 0.5 trailing edge."""
         u, way = self._stops
         at = np.interp(np.mod(self.curve.corners - self.leading, self.curve.length), way, u)
         return np.sort(wrapped(at, -0.25))

@@ -26,7 +26,7 @@ class Annulus:
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return the boundary of an O grid from the body to the outer curve.
 
-        Raises InputError if `sampling` has a far-field distance, a topology except "o", or unsuitable fields.
+        Raises InputError for a far-field distance, a topology except "o", or settings for other bodies.
         """
         if sampling.far_field is not None:
             problem = "a domain with a boundary of its own has no far field"

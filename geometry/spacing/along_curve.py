@@ -52,10 +52,10 @@ def stretch_arcs(
 
 
 def on_corners(distance: Floats, corners: Floats, fixed: tuple[int, ...] = (), step: int = 1) -> Floats:
-    """Return the distances (n,) of nodes, changed so that a node is at each of the `corners` (m,).
+    """Return the distances (n,) of nodes along a curve, changed so that each of the `corners` (m,) is one.
 
     Each corner takes the nearest node whose index is a multiple of `step`, or any node if these are too few.
-    The first, the last and the `fixed` nodes stay. Raises InputError: more corners than nodes.
+    The first, the last and the nodes with indices `fixed` stay. Raises InputError: more corners than nodes.
     """
     if corners.size == 0:
         return distance
