@@ -38,7 +38,7 @@ Within: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 
 @dataclass(frozen=True)
 class Rectangle:
-    """A rectangle around a wing's section: `front` to `back` along the body, `low` to `high` around it."""
+    """A rectangle that encloses a wing's section: limits along the body, then limits around the body."""
 
     front: float
     back: float
@@ -89,7 +89,7 @@ def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
 
 
 def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]:
-    """Return cell lengths on rear and front side of `box`; `corners` are numbers of cells on half of each."""
+    """Return cell lengths on the rear and front of `box`; `corners` are numbers of cells on half of each."""
     edge, nose = corners
     return (box.high - box.low) / (2 * edge), (box.high - box.low) / (2 * nose)
 

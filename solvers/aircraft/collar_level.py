@@ -91,7 +91,7 @@ def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
 def planned_collar(
     holes: Sequence[Hole], corners: tuple[int, int], first: float, growth: float
 ) -> "tuple[CollarPlan, list[CollarLevel]]":
-    """Return the numbers of cells in a ring of cells around a wing, and this ring for each section.
+    """Return the numbers of cells of the rings around a wing's sections, and these rings of cells.
 
     `holes` are the sections of the wing from the root on. `corners` is a result of `planned_corners`. Cells
     at the wing are `first` high and grow by at most `growth`.
@@ -217,7 +217,7 @@ class CollarLevel:
 
     @property
     def long_sides(self) -> tuple[Floats, Floats]:
-        """Coordinates s, along the body, of nodes on the ring's lower and upper edge, from rear to front."""
+        """Coordinates s, along the body, on lower and upper edge of a wing's ring of cells, rear to front."""
         s, half = self.ring[:, -1, 0] / self.hole.scale[0], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
         return s[half + nose : 2 * half - edge + 1][::-1], s[edge : half - nose + 1]

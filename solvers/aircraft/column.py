@@ -84,7 +84,7 @@ class ColumnPlan:
         return replace(self, collars=(replace(first, low=low, top=top), *fins))
 
     def evened(self, widest: float) -> ColumnPlan:
-        """Return a plan that limits cells above and below wing and fin to `widest` times their mean."""
+        """Return a plan that limits cells above and below wings to `widest` times their mean length."""
         return replace(self, collars=tuple(replace(each, widest=widest) for each in self.collars))
 
 
@@ -93,8 +93,8 @@ def planned_column(
 ) -> tuple[ColumnPlan, list[ColumnLevel]]:
     """Return numbers of cells for patches at a wing, a fin or both, and the patches on each surface.
 
-    The surfaces are nested around the body. ``holes[k]`` are the sections of a wing, or of a fin, on these
-    surfaces. If there are both, the wing is the first.
+    The surfaces are nested around the body. ``holes[k]`` are sections on these surfaces: of the wing, or of
+    the fin, which comes last. Cells next to them are `first` high and grow by at most `growth`.
     """
     corners = planned_corners([hole for each in holes for hole in each])
     collars, levels = zip(*(planned_collar(each, corners, first, growth) for each in holes), strict=True)

@@ -22,7 +22,7 @@ def off_body(points: Floats, above: Floats, rings: Sequence[Indices], first: flo
     Parameters
     ----------
     above : (p, 3) points at the distance `first` from the starts of the lines, along normals of the body.
-    rings : for each wing, indices (n, m) of lines whose starts on the body are m loops of n nodes around it.
+    rings : for each wing, indices (n, m) of lines; their starts are m loops of n nodes around the wing.
     """
     turned = (above - points[1]) / first
     turned[points[0, :, 2] == 0.0, 2] = 0.0
@@ -42,7 +42,7 @@ def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Fl
     """Return `points` (k, p, 3), moved so that grid lines start from a wing at right angles to its span.
 
     k points are on each of p spanwise lines. `ring` (n, m) are indices of these lines: n around the wing, m
-    off its surface. If `closed`, the last of the n repeats the first. Cells at the wing are `first` high.
+    away from it. If `closed`, the last of the n repeats the first. Cells at the wing are `first` high.
     """
     lines = np.moveaxis(points[:, ring], 2, 0)  # (m, k, n, 3), from the wing outwards
     wall, away = lines[0], (lines[1] - lines[0]) / first

@@ -44,8 +44,8 @@ def mended(coarse: Floats, sides: Sequence[Floats], nodes: Floats) -> Straight |
     """Interpolate `nodes` (2, ni, nj) anew around folded cells, in place: linearly instead of with splines.
 
     `nodes` were interpolated from a `coarse` grid (2, m, n) and from `sides` (see `Sides`). Return a mask
-    (m, n) that is 1 at the coarse nodes with linear interpolation. If `coarse` has folded cells, or if linear
-    interpolation does not reduce their number in `nodes`, these stay unchanged and None is returned.
+    (m, n) that is 1 at the coarse nodes with linear interpolation. If `coarse` has folded cells, or if
+    `nodes` would not get fewer of them, `nodes` stay unchanged and None is returned.
     """
     if count_folded(coarse.transpose(1, 2, 0)):
         return None

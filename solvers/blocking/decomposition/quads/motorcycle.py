@@ -29,7 +29,7 @@ Station = tuple[float, int, int, int]
 
 @dataclass(frozen=True, eq=False)
 class MotorcycleGraph:
-    """Lines of constant u or v, in a map of a domain to the u, v plane, that divide it into regions.
+    """Lines that divide a domain into regions. Each has constant u or v in a map of the domain.
 
     Each starts at a singular point of the map or at a wall. It ends where it first meets a line or a wall.
     """
