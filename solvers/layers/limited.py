@@ -14,7 +14,7 @@ from meshonet.geometry.spacing.gradual_sizes import limited_sizes
 
 PASSES = 8  # largest number of passes; chords of a bent line differ from its arcs, less so in each pass
 SPARE = 1.08  # smallest ratio of the length that the cells can reach to the length of the line
-LEFT = 1e-6  # margin below the growth limit over growth - 1, so that rounded files satisfy it too
+LEFT = 1e-6  # margin below the growth limit, relative to growth - 1, so that rounded files satisfy it too
 HALVINGS = 60  # of the interval of a line's factor
 _MOST = math.log(100.0)  # of the factor on the last cell of a line
 

@@ -22,7 +22,7 @@ from meshonet.solvers.refinement.size_metric import SizeMetric
 TURN = np.radians(3.5)  # largest angle by which a wall turns along one cell, for the default number of cells
 CELLS_IN_GAP = 15.0  # smallest ratio of the gap in front of a wall to the length of cells along the wall
 ALONG = 0.2  # growth of sizes along walls per length
-UNEVEN = 2.0  # largest ratio of the thickest to the thinnest layers of a loop, which have as many cells
+UNEVEN = 2.0  # largest ratio of thickest to thinnest layers of a loop, which have the same number of cells
 THINNEST = 8.0  # smallest thickness of layers in first cells
 SPREAD = 0.1  # growth of the thickness of layers along a wake per distance from the sharp edge
 AROUND_CORNER = 2.5  # ratio of arc length to distance up to which a wall point is around a corner: no gap
