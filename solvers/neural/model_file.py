@@ -18,7 +18,7 @@ OURS = "use a file made by meshonet train"  # remedy for a file that is no model
 
 
 class Kind(NamedTuple):
-    """A kind of model file, recognised by the entries ``{"kind": text, key: version}`` of its header."""
+    """A kind of model file: its header has `text` in the entry ``kind``, and `version` in the entry `key`."""
 
     text: str
     key: str
@@ -75,8 +75,7 @@ def write_model(
 ) -> None:  # fmt: skip
     """Write a model file for `read_model`, whole or not at all; each array keeps its precision.
 
-    `recipe` has the training settings, `figures` the error measures on held-out shapes. `facts` are further
-    entries of the header.
+    `recipe` has training settings, `figures` error measures on held-out shapes, `facts` other header entries.
     """
     from safetensors.numpy import save
 

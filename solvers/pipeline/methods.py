@@ -67,7 +67,7 @@ class MethodEntry(NamedTuple):
 
     @property
     def algebraic(self) -> bool:
-        """Whether an explicit formula of the boundary gives the grids."""
+        """Whether the grids follow from the boundary by an explicit formula."""
         return self.kind == "algebraic"
 
     @property

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Request(FirstCell):
-    """Options of all kinds of grids; `GridRequest` explains the fields."""
+    """Options that every kind of grid has; `GridRequest` explains them."""
 
     sampling: Sampling = field(default_factory=Sampling)
     method: str = "best"
@@ -93,7 +93,7 @@ class OneBlock(Request):
         return self.method.partition(":")[0] == "operator"
 
     def shape_sampling(self) -> Sampling:
-        """Return the sampling of shapes; with first-cell heights, ``auto`` spacing is by curvature."""
+        """Return the sampling; if first-cell heights are given, spacing ``auto`` becomes ``curvature``."""
         if not self.at_walls or self.algebraic:
             return self.sampling
         spacing = "curvature" if self.sampling.spacing == "auto" else self.sampling.spacing

@@ -80,9 +80,9 @@ def judged(
 ) -> Result:
     """Return a solution with the quality of its grid; the time of the measurement is added to `seconds`.
 
-    Notes say where cells grow by more than a prescribed ratio; without such a ratio, where neighbouring cells
-    along a wall differ by more than `JUMP`. Raises NoValidGridError, with the text `remedy`, if cells are
-    folded and the request does not allow that.
+    A note of the result says where cells grow by more than the prescribed ratio. If none is prescribed, it
+    says where the lengths of neighbouring cells along a wall differ by a factor above `JUMP`. Raises
+    NoValidGridError, with the text `remedy`, if cells are folded and the request does not allow that.
     """
     with stage("quality", seconds):
         quality = measure(solution.grid, percentiles=request.percentiles)

@@ -103,8 +103,8 @@ def keeps_base(shape: Shape, request: GridRequest) -> TypeGuard[Airfoil]:
 
     `te` ``exact`` keeps every base. ``auto`` without a first-cell height keeps bases higher than `THIN_BASE`
     chords, unless an option such as `refine` excludes such grids. ``auto`` with a first-cell height keeps
-    bases that are at least `RESOLVED` first cells high. For a base higher than `THIN_BASE` chords, one first
-    cell is enough. If `base_nodes` is given, ``auto`` with a first-cell height keeps every base.
+    bases that are higher than `THIN_BASE` chords and at least as high as one first cell, thinner bases if
+    they are at least as high as `RESOLVED` first cells, and every base if `base_nodes` is given.
     """
     sampling = request.sampling
     if request.method not in MARCHING or sampling.te not in ("auto", "exact"):

@@ -24,13 +24,13 @@ def wall_facts(grid: Grid) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def growth_note(grid: Grid, limit: float, run: Lines | None = None) -> tuple[str, ...]:
+def growth_note(grid: Grid, limit: float, known: Lines | None = None) -> tuple[str, ...]:
     """Return a note with the greatest growth ratio along grid lines, and its node, if above `limit`.
 
     If this ratio is not on a line from a wall, the note also has the greatest ratio along lines from walls.
-    `run` has the growth ratios of a multi-block grid; None computes them.
+    If `grid` has several blocks, `known` may have its growth ratios; they are then not computed again.
     """
-    ratios, leaving = _growth(grid, run)
+    ratios, leaving = _growth(grid, known)
     largest = most_of(ratios.families().values())
     if largest is None or largest.max <= limit * (1.0 + _SAME):
         return ()
@@ -67,13 +67,13 @@ def jump_note(grid: Grid, most: float) -> tuple[str, ...]:
     return note
 
 
-def _growth(grid: Grid, run: Lines | None) -> tuple[Growth, Extreme | None]:
+def _growth(grid: Grid, known: Lines | None) -> tuple[Growth, Extreme | None]:
     """Return the ratios of neighbouring cells along each direction, and along lines from walls."""
     if grid.topology != "blocks":
         ratios = growth(grid)
         return ratios, growth_off_walls(ratios, grid.walls())
-    run = run or lines_without_percentiles(grid)
-    return run.growth, run.leaving
+    known = known or lines_without_percentiles(grid)
+    return known.growth, known.leaving
 
 
 def lines_without_percentiles(grid: Grid) -> Lines:

@@ -129,7 +129,7 @@ class Chords:
         return int((along[:, 0] * along[:, 2]).sum())
 
     def along_loops(self, counts: Indices) -> Indices:
-        """Return cell counts (loops,) of boundary loops if opposite edges in set k have `counts`[k] cells."""
+        """Return cell counts (loops,) of boundary loops, given `counts`, those of sets of opposite edges."""
         mesh = self.layout.mesh
         along = np.zeros(len(mesh.domain.loops), dtype=np.intp)
         for edge in np.flatnonzero(self.wall):
@@ -148,7 +148,7 @@ class Chords:
         return lost
 
     def bend(self, edge: int) -> float:
-        """Return the greatest angle in radians by which the wall turns in one cell of a block edge on it."""
+        """Return the wall's greatest turn, in radians, between neighbouring nodes of block edge `edge`."""
         arcs = np.sort(self.arcs(edge))
         loop = self.layout.mesh.domain.loops[self.layout.mesh.places.loop[self.edges[edge][0]]]
         return float(np.radians(turning_between(loop, arcs[:-1], arcs[1:]).max()))
@@ -164,9 +164,9 @@ class Chords:
         return self.rounded(exp(mean), self.least if least is None else least)
 
     def rounded(self, wanted: Floats, least: Indices) -> Indices:
-        """Return the cell counts `wanted` (chords,) of sets of opposite edges as permitted whole numbers.
+        """Return whole numbers near `wanted` (chords,) as cell counts, one for each set of opposite edges.
 
-        These are multiples of `multiple` (chords,), and at least `least` (chords,).
+        They are multiples of the attribute `multiple` (chords,), and at least `least` (chords,).
         """
         times = self.multiple
         return times * np.maximum(-(-least // times), nearest_whole(wanted / times).astype(np.intp))

@@ -11,10 +11,9 @@ from meshonet.geometry.errors import InputError
 
 
 def in_jax(function: Callable[..., Tensor], nj: int | None = None) -> Callable[..., Any]:
-    """Convert a function of `meshonet.layer` to a function of JAX arrays with gradients.
+    """Convert a function of `meshonet.layer` to a differentiable function of JAX arrays.
 
-    `jax.grad`, `jax.vmap` and `jax.jit` apply to the result. `jax.grad` computes each grid again, because JAX
-    keeps no state of a function that it calls. Needs JAX (``pip install jax``).
+    `jax.grad`, `jax.vmap` and `jax.jit` apply to the result. `jax.grad` computes each grid twice.
 
     Parameters
     ----------
@@ -27,7 +26,7 @@ def in_jax(function: Callable[..., Tensor], nj: int | None = None) -> Callable[.
     Raises
     ------
     InputError
-        JAX is not installed.
+        JAX is not installed (``pip install jax``).
     """
     try:
         import jax

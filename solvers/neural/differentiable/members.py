@@ -15,7 +15,7 @@ Failed = Literal["raise", "nan"]
 class MemberError(SolverError):
     """Error: some members of a batch have no grid.
 
-    `reasons` has problem and remedy by the index of the member.
+    `reasons` maps the index of each of these members to two texts: the problem and its remedy.
     """
 
     members: tuple[int, ...]  # the indices

@@ -59,10 +59,10 @@ class Optimum:
         return newton(nodes + bordered(inner(start - nodes)), smoothness), smoothness
 
     def adjoint(self, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
-        """Return the derivatives of functionals of optimal grids with respect to boundary nodes.
+        """Return derivatives (batch, 2, ni, nj), by boundary nodes, of one scalar function of each grid.
 
-        `gradient` has those with respect to all nodes. `nodes` and `number`, the results of `solve`, are the
-        grids and the weights of their smoothness term. The result has no meaning at inner nodes.
+        `nodes` are the grids that `solve` returns, `number` (batch,) the weights of their smoothness terms.
+        `gradient` has its derivatives by all nodes. The result has no meaning at inner nodes.
         """
         functional = Functional(Weights().shape, number)
         with torch.enable_grad():

@@ -37,8 +37,8 @@ class Task(nn.Module):
         `step` seeds random draws, so that all processes and resumed runs draw the same numbers.
         """
 
-    def differentiate(self, parts: Tensor, team: Team) -> None:  # noqa: ARG002 - for those who average themselves
-        """Compute the gradients of the loss, the sum of `parts`, with respect to the parameters."""
+    def differentiate(self, parts: Tensor, team: Team) -> None:  # noqa: ARG002 - subclasses use it
+        """Compute the parameters' gradients of the loss, the sum of `parts`, in this process of `team`."""
         parts.sum().backward()
 
     def validate(self) -> dict[str, float]:
@@ -58,7 +58,8 @@ class Task(nn.Module):
 class Run:
     """A training task and its settings.
 
-    `recipe` is stored in the model file. A resumed run must have the same `recipe` and `identity`.
+    `recipe` has the settings that the model file stores, `identity` further facts, such as a fingerprint of
+    the data. Both must be the same when a run is resumed, except for the learning rate.
     """
 
     task: Task

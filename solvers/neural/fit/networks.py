@@ -34,8 +34,8 @@ class NamedParameters(nn.Module):
 class StripFNO(NamedParameters):
     """The network for airfoils (`StripNetwork`) as a torch module.
 
-    The input has `inputs` channels along the strip and `scalars` single numbers, the output `outputs`
-    channels. `width` is the number of hidden channels, `modes` of Fourier modes, `layers` of Fourier layers.
+    The arguments are counts: `inputs` of input channels, `scalars` of scalar inputs, `outputs` of output
+    channels, `width` of hidden channels, `modes` of Fourier modes, and `layers` of Fourier layers.
     """
 
     def __init__(

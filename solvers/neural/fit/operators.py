@@ -108,7 +108,7 @@ class OperatorTask(ModelTask):
 
 
 def differences(model: Architecture, samples: Samples) -> Floats:
-    """Return the wanted outputs (n, ni, nj, 2): grids minus the base grids to which outputs are added."""
+    """Return what a model has to learn (n, ni, nj, 2): nodes, minus harmonic grids if it corrects those."""
     if model.base == "none":
         return samples.nodes
     return samples.nodes - np.array([extend(boundary) for boundary in samples.boundaries()])
@@ -125,8 +125,7 @@ def run(
     """Return the run that trains `model` on the training split of `data`, never on its test split.
 
     `held_out` grids of this split, evenly spaced, are not trained on; the loss on them is monitored.
-    `settings` has values by name that replace default settings of the model. Raises InputError if there are
-    too few grids or unknown settings.
+    `settings` replaces defaults of the model, by name. Raises InputError: too few grids or unknown settings.
     """
     made = architecture(model, data.topology, settings)
     rows = np.arange(len(data)) if made.physics else data.where("train")

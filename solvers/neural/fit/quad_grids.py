@@ -41,7 +41,7 @@ class Quads:
         return Quads(base, step, winslow, variational, self.around)
 
     def grids(self) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-        """Return `base` (initial grids), `step` (their last change), and targets `winslow`, `variational`."""
+        """Return the fields `base`, `step`, `winslow` and `variational`, in this order."""
         return self.base, self.step, self.winslow, self.variational
 
 

@@ -78,7 +78,7 @@ class StripTask(Task):
         return list(decode(out.numpy().astype(np.float64), self.basis, self.scale, size))
 
     def figures(self, epoch: int) -> dict[str, Any]:  # noqa: ARG002
-        """Return error quantiles on held-out bodies: without and with the network, and after Picard steps."""
+        """Return held-out error quantiles of harmonic and network grids, before and after Picard steps."""
         test, errors = self.held_out, dict[str, list[float]]()
         for wall, far, goal, answer in zip(test.wall, test.far, test.residual, self.answers(), strict=True):
             base = harmonic(wall, far, across().eta)
@@ -122,5 +122,5 @@ def run(
 
 
 def distance(answer: Complexes, goal: Complexes) -> float:
-    """Return the root mean square difference, over the strip, of functions with these Fourier modes."""
+    """Return the root mean square difference of two functions on n lines, from Fourier modes (modes, n)."""
     return float(np.sqrt((np.abs(answer - goal) ** 2).sum(axis=0).mean()))

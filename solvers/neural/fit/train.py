@@ -34,8 +34,7 @@ def train(
     Parameters
     ----------
     model : one of `models.architectures.MODELS`, or `OF_VOLUMES`.
-    data : `Strips` for ``strip``, `Quads` for ``quad``, a list of `SixFaces` for `OF_VOLUMES`, else
-        `Samples`.
+    data : `Strips` for ``strip``, `Quads` for ``quad``, `list[SixFaces]` for `OF_VOLUMES`, else `Samples`.
     output : path of the model file.
     plan : settings of the training loop (see `standard`).
     team : this process among those that train the model together.
@@ -43,7 +42,8 @@ def train(
     held_out : number of shapes that are not used for training; None: the default of the model.
     resume : whether to continue from the checkpoint that belongs to `output`.
     report : called every `plan.log_every` epochs and at the end.
-    choices : options of the model: further parameters of ``run`` in its module, such as `fit.quad`.
+    choices : options of the model. They are further parameters of `fit.strip.run`, `fit.quad.run`,
+        `fit.volume.run` (for `OF_VOLUMES`) or `fit.operators.run` (for all other models).
     """
     module = _module(model)
     held_out = module.HELD_OUT if held_out is None else held_out

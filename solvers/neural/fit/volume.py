@@ -80,9 +80,9 @@ class VolumeTask(Task):
         return torch.cat([0.5 * torch.exp(-self.spread) * both, 0.5 * self.spread.sum()[None]])
 
     def differentiate(self, parts: Tensor, team: Team) -> None:
-        """Compute the gradients of the loss, the sum of `parts`, with respect to the parameters.
+        """Compute the parameters' gradients of the loss, the sum of `parts`, in this process of `team`.
 
-        If `model.projected`, components by which gradients of two of the parts oppose each other are removed.
+        With `model.projected`, gradients of the first two parts lose components that oppose each other.
         """
         if not self.model.projected:
             super().differentiate(parts, team)

@@ -104,7 +104,7 @@ class WNO(AlongXi):
 
 @cache
 def wavelets(n: int, levels: int) -> Floats:
-    """Return the scaling functions, then the wavelets, of the last level; all are orthonormal and periodic.
+    """Return the periodic orthonormal scaling functions of the coarsest level, followed by its wavelets.
 
     The array (2 n / 2^levels, n) has the values of one function per row, at n nodes; 2^levels divides n.
     """
@@ -124,8 +124,7 @@ def wavelets(n: int, levels: int) -> Floats:
 class LNO(AlongXi):
     """Laplace neural operator along xi: h <- sin(r + W h + b), r: response of dynamical systems to h.
 
-    Cao, Goswami & Karniadakis, LNO: Laplace neural operator for solving differential equations, arXiv
-    2303.10528.
+    Cao, Goswami & Karniadakis, LNO: Laplace neural operator, arXiv 2303.10528.
     """
 
     width: int = 16
@@ -150,9 +149,9 @@ class LNO(AlongXi):
 def respond(xp: Any, poles: Any, residues: Any, h: Any) -> Any:
     """Return the responses (batch, n, out) of linear systems to `h` (batch, n, in), at n places from 0 to 1.
 
-    `poles` (in, out * m, 2) are log(decay rate) and frequency (in half turns) of m poles per channel pair,
-    `residues` (in, out, m, 2) real and imaginary parts. With poles mu_j, residues beta_j, and the Fourier
-    coefficients alpha_l of h at frequencies omega_l, the response that starts at rest is ::
+    For each pair of an input and an output channel, `poles` (in, out * m, 2) has p and q of m poles mu_j =
+    -exp(p) + i pi q, and `residues` (in, out, m, 2) the real and imaginary parts of their residues beta_j.
+    With Fourier coefficients alpha_l of `h` at frequencies omega_l, the response that starts at rest is ::
 
         sum_l alpha_l H(i omega_l) exp(i omega_l xi) - sum_j beta_j A(mu_j) exp(mu_j xi)
         H(s) = sum_j beta_j / (s - mu_j)        A(s) = sum_l alpha_l / (i omega_l - s)

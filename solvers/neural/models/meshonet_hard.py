@@ -21,9 +21,9 @@ class MeshONetHard(Architecture):
         (x, y) = H + s * B(xi, eta) * branch(x_1, y_1 .. x_m, y_m) . trunk(lift(xi, eta))
 
     H is the harmonic extension of the boundary, whose points are (x_1, y_1) .. (x_m, y_m). B is zero on the
-    boundary. s is the root mean square difference of the training grids from H. lift(xi, eta) are xi, eta,
-    and sines and cosines of both; for O grids only functions that are periodic in xi. With `modes`, B * trunk
-    is the proper orthogonal decomposition of the differences, which reduces errors at sharp kinks.
+    boundary. lift(xi, eta) are xi, eta, and sines and cosines of both; for O grids only functions that are
+    periodic in xi. s is the root mean square difference of the training grids from H. If `modes` is not 0,
+    that many modes of the proper orthogonal decomposition of these differences replace B * trunk.
     """
 
     base: ClassVar[Literal["none", "harmonic"]] = "harmonic"

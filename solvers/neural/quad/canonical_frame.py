@@ -51,10 +51,10 @@ class Canonical:
 
 
 def canonical(boundary: Boundary) -> Canonical:
-    """Return a four-sided or O boundary in its canonical frame; unchanged if rounding would merge its nodes.
+    """Return a four-sided or O boundary in its canonical frame, rounded to 1e-9 of the domain's size.
 
     Boundaries that differ by translation, rotation, scaling, mirroring or names of sides get bitwise equal
-    nodes. Nodes are rounded to 1e-9 of the domain's size, since minimisation would amplify rounding errors.
+    nodes. A four-sided boundary stays unchanged if rounding would merge its nodes.
     """
     return _of_body(boundary) if boundary.periodic else _of_quad(boundary)
 

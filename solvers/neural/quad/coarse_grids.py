@@ -98,7 +98,7 @@ def nearer(z: Any, unit: Any, xp: Any, around: bool = False) -> Any:
 
 
 def in_frame(z: Any, xp: Any) -> tuple[Any, Any]:
-    """Return grids `z` (x + iy) normalised by `frame`, and factors (batch, 1, 1) to turn and scale back."""
+    """Return centred grids `z`, turned and scaled to area 1, and factors (batch, 1, 1) that undo both."""
     middle, factor = (value[:, None, None] for value in frame(z, xp))
     return times(z - middle, factor), factor.conj() / (factor.real**2 + factor.imag**2)
 

@@ -80,7 +80,7 @@ def _extrapolated(correction: Any, step: Any, move: Any, xp: Any) -> Any:
 
 
 def nodes_after(n: int) -> int:
-    """Return the node count `n` of a side, but from 33 to 65, for the Picard steps after the network."""
+    """Return the node count of a side for the Picard steps after the network: `n`, limited to 33 to 65."""
     return min(max(n, LATENT), FINER)
 
 

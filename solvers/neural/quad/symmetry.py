@@ -82,8 +82,8 @@ def convolution(weight: Any, places: Any, xp: Any) -> Any:
     """Return the kernel (8 * out, 8 * in, size, size) of a convolution that commutes with turns and mirrors.
 
     Channels are in sets of 8, one for each symmetry of a square. `weight` (out, in, 8, size, size) has the
-    parameters for each pair of sets. `places` (8, 8, size²), from `table`, has the index of the parameter at
-    each place of the kernel of a pair.
+    parameters for each pair of an output set and an input set. For such a pair, `places` (8, 8,
+    size²), from `table`, has the flat index of the parameter that each entry of the kernel takes.
     """
     out, into, _, size, _ = weight.shape
     spread = weight.reshape(out, into, -1)[:, :, places]
@@ -99,6 +99,9 @@ def lift(weight: Any, seen: Any) -> Any:
 
 
 def projection(weight: Any, elements: Any, xp: Any) -> Any:
-    """Return the last layer (2 * heads, 8 * in): symmetries `elements` times `weight` (heads, 2, in) / 8."""
+    """Return the last layer (2 * heads, 8 * in): each matrix of `elements` times the vectors `weight` / 8.
+
+    `elements` (8, 2, 2) are symmetries of a square. ``weight[head, :, k]`` is for set k of 8 input channels.
+    """
     back = weight[:, None, :, :, None] * xp.moveaxis(elements, 0, -1)[:, :, None]
     return back.sum(2).reshape(2 * len(weight), -1) / ORDER

@@ -21,10 +21,10 @@ def middles(walls: Any, xp: Any = np) -> Any:
 
 
 def unrolled(z: Any, centres: Any, xp: Any = np) -> tuple[Any, Any]:
-    """Return the strips i log(z - centre) of complex O grids `z` (batch, m + 1, n), and a mask (batch,).
+    """Return complex O grids `z` (batch, m + 1, n) mapped by i log(z - centre), and a mask (batch,).
 
-    The first index of `z` runs around the body and repeats the first node. The mask is true for grids that
-    wind once around their centre; other strips are useless.
+    ``z[b, i]`` is a line from the body outwards, and ``z[b, m]`` repeats ``z[b, 0]``. The mask is true for
+    grids that wind once around their centre; other results are useless.
     """
     off = z - centres[:, None, None]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -57,13 +57,13 @@ def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any 
 
 
 def even(strips: Any, n: int, xp: Any = np) -> Any:
-    """Return `n` evenly spaced nodes from ``strips[b, i, 0]`` to ``strips[b, i, -1]``, (batch, m + 1, n)."""
+    """Return `n` equally spaced nodes between the ends of each line ``strips[b, i]``: (batch, lines, n)."""
     eta = xp.linspace(0.0, 1.0, n, dtype=strips.real.dtype, device=strips.device)
     return strips[:, :, :1] * (1.0 - eta) + strips[:, :, -1:] * eta
 
 
 def factors(strips: Any, xp: Any = np) -> Any:
-    """Return factors (batch,) that scale strips of complex nodes (batch, m + 1, n) to area 2 per period."""
+    """Return factors (batch,) that scale strips of width 2 pi, complex nodes (batch, m + 1, n), to area 2."""
     heights = (strips[:, :-1, -1] - strips[:, :-1, 0]).imag.mean(1)
     return 1.0 / xp.sqrt(0.5 * TURN * heights)
 

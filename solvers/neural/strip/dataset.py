@@ -79,9 +79,9 @@ class StripTargets:
     """Training data: inputs, as `encode` returns them, and wanted outputs (n, 2 Q, COLUMNS).
 
     Regions around bodies are mapped to periodic strips. R is Winslow's solution in a strip, minus the
-    harmonic extension of its walls. At COLUMNS points along the strip, R / (scale * size**2) is a combination
-    of Q functions across it, `basis` (Q, LEVELS - 2), from proper orthogonal decomposition. The wanted
-    outputs are the real parts, then the imaginary parts, of its coefficients. `size` is from `encode`.
+    harmonic function that is equal to it on the strip's sides. At COLUMNS points along the strip, R is
+    approximately a sum of Q functions across it, `basis` (Q, LEVELS - 2), times factors. The wanted outputs
+    are the real, then the imaginary parts of factors / (scale * size**2), with `size` from `encode`.
     """
 
     channels: Floats
@@ -92,7 +92,7 @@ class StripTargets:
 
 
 def make_targets(strips: Strips, count: int) -> StripTargets:
-    """Return training data from `strips`, which are solutions around bodies, and from their mirror images.
+    """Return training data from Winslow's solutions `strips` and from the mirror images of these solutions.
 
     `count` is the number of basis functions across a strip whose coefficients are the wanted outputs.
     """

@@ -24,7 +24,7 @@ def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
 
     - channels (batch, CHANNELS, COLUMNS): the harmonic extension of the walls at the fractions `DEPTHS` of
       the height, and its derivative along theta, both divided by `size`;
-    - scalars (batch, SCALARS): log(size), the strip's height, and the shift of `far` along theta;
+    - scalars (batch, SCALARS): log(size), strip height, and the mean shift of `far` from `wall` along theta;
     - size (batch,): the root mean square deviation of the walls from straight lines.
     """
     mean = (far - wall)[:, 0]
@@ -42,9 +42,10 @@ def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
 def decode(coefficients: Any, basis: Any, scale: float, size: Any, xp: Any = np) -> Any:
     """Return Fourier modes (batch, 2 MODES + 1, LEVELS) of Winslow's solution minus the harmonic extension.
 
-    `coefficients` (batch, 2 Q, COLUMNS) are the network's outputs at COLUMNS even steps along the strip, real
-    parts first. `basis` (Q, LEVELS - 2) has the basis functions at the inner Chebyshev points across it. The
-    result is multiplied by ``scale * size**2``, with `scale` of `StripTargets`, `size` (batch,) of `encode`.
+    Both are functions on the periodic strip to which the region around a body is mapped. The difference is a
+    sum of Q functions across the strip, `basis` (Q, LEVELS - 2), at its inner Chebyshev points. Their factors
+    are ``scale * size**2`` times the network's outputs, `coefficients` (batch, 2 Q, COLUMNS) at equal steps
+    along the strip: Q real parts, then Q imaginary parts. `scale` is of `StripTargets`, `size` of `encode`.
     """
     q = len(basis)
     c = from_columns(coefficients[:, :q] + 1j * coefficients[:, q:], xp)

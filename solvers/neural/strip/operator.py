@@ -64,7 +64,7 @@ class StripOperator(Operator):
         return answer * across().smooth[:, None]
 
     def solve(self, boundaries: Sequence[Boundary], polish: Polish = "auto", **_: Any) -> list[Solution]:
-        """Return a grid inside each O boundary, with exactly the given boundary nodes."""
+        """Return a grid for each O boundary, with exactly the given boundary nodes."""
         self.check(boundaries)
         if not self.network:
             return conformal.solve(boundaries, polish)
