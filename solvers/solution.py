@@ -74,7 +74,7 @@ class Solution:
 
 
 def timed(solve: Callable[P, Solution]) -> Callable[P, Solution]:
-    """Return `solve`, changed so that its solution contains the seconds of the call as the stage ``grid``."""
+    """Return `solve`, changed so that ``seconds["grid"]`` of its solution is the duration of the call."""
 
     @wraps(solve)
     def run(*args: P.args, **kwargs: P.kwargs) -> Solution:

@@ -65,9 +65,9 @@ def stage(name: str, seconds: Timings) -> Iterator[None]:
 
 @contextlib.contextmanager
 def filling(name: str, unit: str, marks: Floats) -> Iterator[None]:
-    """Return a context for a kernel that fills `marks` (steps,), one value per step.
+    """Return a context for the stage `name`, in which a kernel sets one value of `marks` (steps,) per step.
 
-    The values are NaN at first; listeners are told how many of them are filled.
+    The values are NaN at first. Watchers (see `watching`) can ask how many are set; `unit` names a step.
     """
     if not (watchers := _watchers.get()):
         yield

@@ -42,6 +42,6 @@ class VolumeRequest(FirstCell):
             raise InputError(f"{self.threads} threads", "use 1 or more", parameter="threads")
 
     def height(self, unit: float = 1.0) -> float:
-        """Return the first-cell height in chords; `unit` is the reference length for y+ in chords."""
+        """Return the first-cell height in chords; the reference length for y+ is `unit`, also in chords."""
         height = super().height(unit)
         return DEFAULT_FIRST_CELL if height is None else height

@@ -12,7 +12,6 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.kernels._native import nearest_points
 
 GRADING = 0.13  # largest growth of edge lengths per distance from a wall
-
 SWEEPS = 20  # number of sweeps that smooth the target lengths
 
 
@@ -25,9 +24,9 @@ class Near:
     square: Floats  # (p, m) squared cosine of the angle between the edge and the normal at this point
 
     def length(self, sizes: "SizeMetric") -> Floats:
-        """Return the target lengths (m,) of m edges, from the target lengths `sizes` at the wall points.
+        """Return the target lengths (m,) of m edges, from the target lengths `sizes` at points on walls.
 
-        Each is the smallest of the lengths that follow from the p points that are nearest to the edge.
+        If several metrics were joined into `sizes`, the smallest of their lengths counts.
         """
         rise = sizes.grading * self.distance
         high = np.minimum(sizes.across[self.point] + rise, sizes.largest)
@@ -71,7 +70,7 @@ class SizeMetric:
         """Return the wall point nearest to each edge, its distance, and the edge's angle to the normal there.
 
         `places` (m, 2) are the midpoints of the edges, `directions` (m, 2) their directions. If this metric
-        joins several, there is one nearest point for each of these.
+        was joined from several, each of them gives its own nearest point for each edge.
         """
         places = np.ascontiguousarray(places)
         size = np.maximum(np.hypot(directions[:, 0], directions[:, 1]), 1e-300)

@@ -15,7 +15,7 @@ _FROM = -0.25  # least place: u = 0, the leading edge, is between others
 
 @dataclass(frozen=True, eq=False)
 class ChannelLines:
-    """Lines from one blade to the next, nearly normal to the layers of both; ends are means over sections."""
+    """Ends of lines that lead across a channel, nearly normal to the layers of the blades on both sides."""
 
     upper: Floats  # (n,) places u (see `SectionPlane`) on the upper side of a blade, from 0 to 0.5
     lower: Floats  # (n,) 1 - u of the opposite places, on the lower side of the next blade
@@ -38,10 +38,10 @@ class ChannelLines:
     def links(self, u: Floats, start: Floats, pairs: Indices, weight: float) -> PlaceLinks:
         """Return linear conditions that keep lines across the channel from leaning more than at the start.
 
-        `u` and `start` (k,) are present and original places of nodes, from 0 to 1 around a blade. Lines join
-        nodes with indices `pairs` (p, 2). The lean of a line is the tangent of its angle to the shortest line
-        from its first end to the layers of the next blade. The increase in lean is linearised at `u` and
-        multiplied by `weight`.
+        `u` and `start` (k,) are the present and original positions of nodes, from 0 to 1 around a blade. Each
+        line joins the two nodes with the indices in a row of `pairs` (p, 2). Lean is the tangent of the angle
+        between a line and the shortest way from its first node to the layers of the next blade. The increase
+        in lean is linearised at `u` and multiplied by `weight`.
         """
         one = u[pairs[:, 0]]
         slope = np.interp(one, self.upper, np.gradient(self.lower, self.upper))
@@ -53,19 +53,19 @@ class ChannelLines:
     def leaning(self, u: Floats, pairs: Indices) -> float:
         """Return the mean square lean (see `links`) of lines across the channel between two blades.
 
-        The lines join nodes with indices `pairs` (p, 2) at places `u` (k,), from 0 to 1 around a blade.
+        The lines join nodes with indices `pairs` (p, 2) at positions `u` (k,), from 0 to 1 around a blade.
         """
         return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
     def weights(self, pairs: Floats) -> Floats:
-        """Return factors (p,) by which ``aside(pairs) ** 2`` becomes the squared lean (see `links`)."""
+        """Return factors (p,): ``aside(pairs) ** 2`` times these is the squared lean of lines (`links`)."""
         return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
 
     def aside(self, pairs: Floats) -> Floats:
-        """Return (p,) by how much the place of the second end of each line is less than its ideal value.
+        """Return the ideal minus the actual position (p,) of the second end of each of p lines.
 
-        `pairs` (p, 2) are the places of both ends, from 0 to 1 around a blade, of lines across the channel
-        between two blades. With the ideal value, a line is nearly normal to the layers of both blades.
+        The lines lead across the channel between two blades. `pairs` (p, 2) are the positions of both ends,
+        from 0 to 1 around a blade. With the ideal second end, a line is nearly normal to both blades' layers.
         """
         upper, lower = (wrapped(each, _FROM) for each in (pairs[:, 0], 1.0 - pairs[:, 1]))
         return np.asarray(lower - np.interp(upper, self.upper, self.lower))

@@ -17,7 +17,6 @@ from meshonet.solvers.rows.span_lines import SpanLines, key_heights
 _DEGREE = 2  # degree of the polynomials of the height
 _FROM, _TO = 1.0, 1.15  # shares of the way along the blade where moves begin and where they are complete
 _CELLS = 4  # number of cells beyond the layers from which on nodes are moved fully
-
 _PARTS = 1.0, 0.5, 0.25  # fractions of the way to the polynomials, tried in turn
 _KEPT = 0.4  # smallest accepted ratio of a cell's smallest Jacobian after the move to the one before it
 

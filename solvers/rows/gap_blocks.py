@@ -20,7 +20,7 @@ _ROUNDS = 4
 
 @dataclass(frozen=True, eq=False)
 class GapEnds:
-    """Nodes on the blade's end and on the hub or casing across a gap, inside the blade's outline."""
+    """Nodes inside the blade's outline at both sides of a gap: on the blade's end, and on hub or casing."""
 
     fill: GapFill  # numbering of the nodes; those of the outline come first
     # low, high: (n, 2) s and theta on the lower and on the upper surface
@@ -38,7 +38,7 @@ class GapBlocks:
 
 
 def gap_ends(row: Row, places: SpanPlaces, zone: Zone, first: float, growth: float) -> GapEnds:
-    """Return nodes on the blade's end and on the hub or casing across a gap, inside the blade's outline.
+    """Return nodes in the outline of a blade at both sides of a gap: on the blade's end, on hub or casing.
 
     Parameters
     ----------

@@ -47,7 +47,7 @@ class SectionPlan:
     wake: tuple[float, float]
 
     def bent(self, plane: SectionPlane, nodes: Floats) -> Floats:
-        """Return `nodes` (n, 2), m' (along the flow) and theta, shifted in theta to follow the wake."""
+        """Return `nodes` (n, 2) in m' (along the flow) and theta, with theta shifted to follow the wake."""
         most = self.wake[0] + self.wake[1] * (plane.height - 0.5)
         start = float(plane.edges[1, 0])
         t = np.maximum(nodes[:, 0] - start, 0.0) / (plane.map.length - start)
@@ -101,7 +101,7 @@ def planned(
     Parameters
     ----------
     coarse : result of `coarse_section` for the middle section; None: it is computed.
-    longest : by key, `INLET` or `OUTLET`: length of the longest straight grid lines there in any section.
+    longest : largest length, in any section, of straight grid lines to `INLET` and `OUTLET` (the keys).
     wake : as in `SectionPlan`.
     gaps : whether the blade ends in a gap at the hub, and at the casing.
     """
@@ -140,7 +140,7 @@ def beginning(plan: SectionPlan, planes: Sequence[SectionPlane], section: KeySec
 
 
 class NextSections:
-    """Makes the grids of sections of a row one after another, each from the grid of the previous section."""
+    """Makes the grids of a blade row in sections at successive heights, each from the grid before it."""
 
     def __init__(self, plan: SectionPlan, section: KeySection) -> None:
         self.plan = plan

@@ -31,10 +31,10 @@ _TRIES, _NEAR = 4, 0.03  # largest number of choices of counts; sufficient relat
 def coarse_section(
     plane: SectionPlane, template: Template = TEMPLATES[0], corners: str = CORNERS[0]
 ) -> Layout:
-    """Return a coarse, optimised block layout of a section, without layers at the blade.
+    """Return a coarse, optimised block layout of a section, beyond the outer edge of the blade's layers.
 
-    `corners` says when nodes are put at corners of the layers' outer edge, see `CORNERS`. Raises InputError
-    if there is no room for inlet or outlet; NoValidGridError if cells are folded.
+    `corners` says when nodes are put at the corners of this edge, see `CORNERS`. Raises InputError if there
+    is no room for inlet or outlet; NoValidGridError if cells are folded.
     """
     return _sized(template(plane.cascade.passage, at_corners=corners == CORNERS[0]), FIRST, None)
 
@@ -46,7 +46,7 @@ def middle_section(
 
     Parameters
     ----------
-    longest : by key, `INLET` or `OUTLET`: length of the longest straight grid lines there in any section.
+    longest : largest length, in any section, of straight grid lines to `INLET` and `OUTLET` (the keys).
     coarse : result of `coarse_section`; None: it is computed.
 
     Raises NoValidGridError if cells are folded.

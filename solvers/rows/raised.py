@@ -26,7 +26,7 @@ _STEP = 1e-5  # steps of u and of the height from which tangents of the blade ar
 
 @dataclass(frozen=True, eq=False)
 class Rise:
-    """Displacements of nodes in the layers next to one end of the blade."""
+    """Displacements of nodes in the blade's wall layers, near a gap between blade and hub or casing."""
 
     end: float  # height at which the blade ends
     up: float  # 1 if the gap is above it, -1 below
@@ -56,7 +56,7 @@ class Rise:
         return cls(end, up, zone.high - zone.low, deep, moves)
 
     def of_columns(self, part: slice) -> Self:
-        """Return the displacements of nodes on some of the grid lines from the blade: the slice `part`."""
+        """Return the displacements of nodes on only some grid lines, those with the indices `part`."""
         return replace(self, deep=self.deep[part], moves=self.moves[part])
 
     def shares(self, heights: Floats) -> Floats:
@@ -79,13 +79,13 @@ def rises_of(
 def raise_layers(
     rises: Sequence[Rise], space: Floats, heights: Floats, ends: tuple[Indices, Indices, Floats], first: float
 ) -> None:
-    """Raise or lower layers next to a narrow gap, in place; first cells keep their exact heights.
+    """Raise or lower the blade's layers next to a narrow gap, in place; first cells keep their exact heights.
 
     Parameters
     ----------
     space : (levels, k, n, 3) x, y, z by level along the span, grid line off the blade, node on the line.
     heights : (levels, k) heights of the nodes on the blade, 0 at the hub and 1 at the casing.
-    ends : levels that bound blade and gaps; the level next to each; the height of the cell between both.
+    ends : for both ends of blade and gaps: the level, the next one inside, the height of the cell between.
     first : height of first cells at the blade.
     """
     rows = space.shape[2]

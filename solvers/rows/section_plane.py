@@ -116,7 +116,7 @@ class SectionPlane:
         return self.places[list(self.cascade.blade.corners)]
 
     def from_corners(self, arcs: Floats) -> Floats:
-        """Return the distances (n,) along the blade from `arcs` (n,) to its nearest corner, or infinity."""
+        """Return arc lengths (n,) from points `arcs` (n,) on the blade to the nearest corner; inf if none."""
         off = wrapped((arcs - self.wall_arcs(self.corners)[:, None]) / self._walls[-1])
         return np.asarray(self._walls[-1] * np.abs(off).min(axis=0, initial=np.inf))
 
@@ -148,8 +148,9 @@ class SectionPlane:
     def across(self) -> tuple[Floats, Floats]:
         """Points opposite each other on neighbouring blades, and how near to each other they are.
 
-        u runs from 0 to 1 around a blade. For the points u = `ON_SIDE` (n,) on the upper side, the first
-        array (n,) has 1 - u of the opposite points. The second (n,) has the blade's perimeter, divided by the
+        Positions u are 0 at a blade's leading edge, rise to 0.5 at the trailing edge along the upper side,
+        then to 1 along the lower side. The first array (n,) has 1 - u of the points on the next blade that
+        are opposite the points at `ON_SIDE` (n,). The second (n,) has the blade's perimeter, divided by the
         distance between the outer edges of both blades' layers, or 0 where nothing is opposite.
         """
         front, pitch = self.cascade.ring.front, np.array([0.0, self.cascade.pitch[1]])
@@ -165,7 +166,7 @@ class SectionPlane:
         return lower, np.where(inside, self.cascade.blade.length / np.sqrt(here), 0.0)
 
     def place(self, point: Floats) -> str:
-        """Return text for users: this section's height, and how far along the blades (m', theta) is."""
+        """Return text for users: this section's height, and where `point` (2,) is along the passage."""
         share = float(self.shares(point[None])[0])
         along = f"between the blades, {100.0 * share:.0f} % of the way along them"
         if share < _AT_EDGE:
@@ -175,14 +176,11 @@ class SectionPlane:
         return f"section at {100.0 * self.height:.3g} % of the span, {along}"
 
     def shares(self, points: Floats) -> Floats:
-        """Return the positions (n,) of `points` (n, 2) along the passage.
-
-        A position is -1 at the inlet, 0 at the leading edge, 1 at the trailing edge, 2 at the outlet.
-        """
+        """Return positions (n,) of `points` (n, 2): -1 at the inlet, 0 and 1 at blade edges, 2 at outlet."""
         return np.interp(points[:, 0], self._stations, _SHARES)
 
     def stations(self, shares: Floats) -> Floats:
-        """Return m' along the flow at positions `shares` (n,): -1 inlet, 0 and 1 blade edges, 2 outlet."""
+        """Return m' along the flow where `shares` (n,) are -1 (inlet), 0 and 1 (blade edges), 2 (outlet)."""
         return np.interp(shares, _SHARES, self._stations)
 
     def camber(self, shares: Floats) -> Floats:

@@ -53,7 +53,7 @@ def slopes_at_keys(values: Floats) -> Floats:
 
 
 def integrals_at_keys(values: Floats) -> Floats:
-    """Return integrals of polynomials with `values` (k, ...) at ``key_heights(k)``, from 0 to each height."""
+    """Integrate polynomials with `values` (k, ...) at heights ``key_heights(k)``, from 0 to each height."""
     return _times(_integrals(len(values)), values)
 
 

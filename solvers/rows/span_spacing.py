@@ -18,7 +18,6 @@ SAMPLES = 17  # number of heights at which positions along a line must be known
 _MOST_BENT = 60.0  # of the logarithm of sizes, at which cells in the middle are a million times larger
 MOST_CELLS = 1000
 
-
 Ends: TypeAlias = tuple[Floats | float, Floats | float]
 """First and last cells of n lines, each a number or (n,)."""
 
@@ -122,7 +121,7 @@ class Spacing:
 
     @classmethod
     def of(cls, lengths: tuple[float, float], ends: Ends, growth: float, cells: int) -> Self:
-        """Return the spacing of nodes, by `two_sided`, on lines with lengths between the two `lengths`."""
+        """Return node spacings by `two_sided` for lines from a shortest to a longest length, `lengths`."""
         known = np.linspace(*lengths, _LENGTHS if lengths[1] > lengths[0] * (1.0 + 1e-9) else 1)
         return cls(lengths, (two_sided(known, ends, growth, cells) / known[:, None]).T)
 

@@ -89,7 +89,7 @@ class StackedRow:
         return second, partner[second]
 
     def nodes(self) -> tuple[RowNodes, list[Callable[[], None]]]:
-        """Return nodes, and functions still to be called, that compute x, y, z of nodes in the wall layers.
+        """Return the row's nodes, and functions that must be called to fill in those in the wall layers.
 
         Until then, x, y, z there are undefined. The nodes of the second periodic side are not computed.
         """

@@ -27,7 +27,7 @@ def whole_section(
     ----------
     beyond : layout of the blocks beyond the layers, in m' (see `MeridionalMap`) and theta.
     largest : length of the longest cells along the straight lines.
-    longest : by key, `INLET` or `OUTLET`: length of the longest straight grid lines there in any section.
+    longest : largest length, in any section, of straight grid lines to `INLET` and `OUTLET` (the keys).
     """
     cascade = plane.cascade
     mesh = beyond.mesh

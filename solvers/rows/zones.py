@@ -29,7 +29,11 @@ class Zone:
 
 
 def section_cells(zones: Sequence[Zone], cells: int, growth: float) -> int:
-    """Return how many of a grid's `cells` each section gets; more if the growth ratio `growth` needs them."""
+    """Return the number of cells in each section of a row, for a grid with about `cells` cells in all.
+
+    `zones` have the numbers of cells along the span. A section gets more cells if it needs them so that cells
+    grow by at most the ratio `growth`.
+    """
     return max(_needed(growth), int(cells / _sections(zones)))
 
 

@@ -121,10 +121,10 @@ def _at(points: Floats, place: Floats, wanted: Floats) -> Floats:
     return np.asarray(points[line, k] + part[:, None] * (points[line, k + 1] - points[line, k]))
 
 
-def with_first_heights(nodes: Floats, first: Indices, heights: Floats) -> Floats:
-    """Return `nodes` (n, 3), with second nodes of edges `first` (m, 2) moved to distances `heights` (m,)."""
-    foot = nodes[first[:, 0]]
-    way = nodes[first[:, 1]] - foot
+def with_first_heights(nodes: Floats, edges: Indices, heights: Floats) -> Floats:
+    """Return `nodes` (n, 3), with `edges` (m, 2) made `heights` (m,) long by moving their second nodes."""
+    foot = nodes[edges[:, 0]]
+    way = nodes[edges[:, 1]] - foot
     moved = nodes.copy()
-    moved[first[:, 1]] = foot + way * (heights / np.maximum(norms(way), 1e-300))[:, None]
+    moved[edges[:, 1]] = foot + way * (heights / np.maximum(norms(way), 1e-300))[:, None]
     return moved

@@ -18,9 +18,8 @@ def with_counts(
 ) -> tuple[StackRequest, tuple[str, ...]]:
     """Return the request with node counts for about `cells` cells, and notes.
 
-    Lines away from the wall have `rows` cells. Node counts that the request sets are kept.
-
-    Raises InputError if cells, nodes around and nodes along the span are all given.
+    Each grid line from the wall outwards has `rows` cells. Node counts that the request sets are kept. Raises
+    InputError if cells, nodes around and nodes along the span are all given.
     """
     if request.around is not None and request.span is not None:
         raise InputError("{cells}, {around} and {span} say how fine the grid is", "give two of them at most")

@@ -20,7 +20,7 @@ _BESIDE = 4  # cells on each side of the nose whose angles count
 
 
 def nose_cell(shape: Airfoil, cells: int) -> float | None:
-    """Return the length in chords of cells at the nose of a section; None if a side has too few `cells`."""
+    """Return the length in chords of cells at a section's nose; None if it has too few `cells` per side."""
     return float(np.interp(TURN, *_turns(shape, cells, 1.0))) if cells >= _FEWEST else None
 
 

@@ -25,7 +25,7 @@ class StackRequest(VolumeRequest):
     span : int, optional
         Number of nodes from the first section to the last; by default 49, or more in ducts and blades.
     cells : int, optional
-        Approximate number of cells around a wing or blade; `around` and `span` follow from it if not given.
+        Approximate number of cells in the grid of a wing or blade; sets `around` and `span` if not given.
     base : float, optional
         Smallest height of trailing edges, in chords of each section; thinner edges are thickened. The default
         is 0.005, or 0.001 for a wing from a surface file.

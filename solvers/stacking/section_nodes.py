@@ -45,18 +45,18 @@ class Around:
         return 2 * self.cells + self.base + 1
 
     def law(self, height: float, length: float, nose: float | None = None) -> Callable[[Floats], Floats]:
-        """Return the distribution of `cells` along a side of a section, from the trailing edge to the nose.
+        """Return the distribution of nodes along a side of a section, from the trailing edge to the nose.
 
-        For parameters, see `ends`. Raises InputError if no distribution has the end cells of `ends`.
+        For parameters, see `ends`. Raises InputError if none has the end cells that `ends` returns.
         """
         return TanhLaw.fitted(self.cells, *self.ends(height, length, nose))
 
     def ends(self, height: float, length: float, nose: float | None = None) -> tuple[float, float]:
         """Return the lengths of the cells at both ends of a side of a section, as fractions of its `length`.
 
-        One end is at the base (blunt trailing edge), whose `height` is given, the other at the nose. The
-        parameter `nose` is the cell length there if the attribute `nose` is None. If both are None, it is
-        0.35 times the mean cell of the side. Parameters are in chords.
+        One end is at the base (blunt trailing edge), whose `height` is given, the other at the nose. The cell
+        at the nose is as long as the attribute `nose`, or the parameter `nose` if the attribute is None. If
+        both are None, it has 0.35 times the mean length on the side. Parameters are in chords.
         """
         edge = min(_EDGE_CELL * max(height, self.gap) / self.base, 1.0 / self.cells)
         first = edge if self.edge is None else self.edge / length

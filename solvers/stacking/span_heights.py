@@ -84,7 +84,7 @@ def _cells(own: Indices, panels: Sequence[int | None], free: Sequence[int]) -> l
 def by_panel(sections: Floats, cells: Sequence[int], last: float | None) -> Floats:
     """Return heights of nodes: one at each of `sections` (n,), and `cells` (n - 1,) cells between these.
 
-    The last cell is at most `last` high (None: no limit) if the last of `cells` is 3 or more.
+    The cell at the tip is at most `last` high (None: any) if the top two sections are 3 or more cells apart.
     """
     lengths = np.diff(sections)
     means = lengths / np.array(cells)

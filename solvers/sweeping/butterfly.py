@@ -56,7 +56,7 @@ class CrossSection:
         return [middle + core * ((1.0 - bend) * line + bend * arc - middle) for line, arc in both]
 
     def across(self, core: float, radial: float, *, eighth: bool = False) -> tuple[Floats, Floats]:
-        """Return lengths (k,) of lines from the wall to the core block, and of the next cells (k,) inside it.
+        """Return lengths (k,) of lines from the wall to the core, and (k,) of the core cell beyond each line.
 
         For `core`, `radial`, see `FiveBlocks`. `eighth` returns an eighth of the lines, enough for a circle.
         """

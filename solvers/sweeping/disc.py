@@ -23,8 +23,8 @@ _TURNS = (((1, 0), (0, 1)), ((0, -1), (1, 0)), ((-1, 0), (0, -1)), ((0, 1), (-1,
 class Disc:
     """A circle and its division into cells.
 
-    Raises InputError if a value is out of its range, if `around` is no multiple of four, or if both `cells`
-    and `around` are given.
+    Raises InputError if a value is out of its range, if the number of cells `around` the circle is no
+    multiple of four, or if the number of all `cells` is given as well.
     """
 
     radius: float  # radius in any unit

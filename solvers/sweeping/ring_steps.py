@@ -14,10 +14,11 @@ _CLOSE = 1e-9  # of the length, to which steps fill it
 
 
 def ring_steps(lengths: Floats, sizes: Floats, rows: int, first: float | None) -> Floats:
-    """Return the steps (k, rows) of k lines of `lengths` (k,); a cell of size `sizes` (k,) follows each line.
+    """Return the steps (k, rows) between nodes on k lines with `lengths` (k,).
 
-    Steps change by one ratio from `first` to the size of that cell, then stay equal. Without `first`, they
-    change along the whole line and end with that size. Ratios are at most `LARGEST`; lines may stay unfilled.
+    `sizes` (k,) are the lengths of the cells beyond the ends of the lines. Along a line, steps change by one
+    ratio from `first` to the size of the cell beyond, then stay equal. Without `first`, they change up to the
+    end. If ratios up to `LARGEST` are not enough, steps do not add up to the length of the line.
     """
     most = math.log(LARGEST)
     low, high = np.full(len(lengths), 0.0 if first else -most), np.full(len(lengths), most)

@@ -169,7 +169,7 @@ def _check_bends(
 
 
 def walled(section: Grid) -> Grid:
-    """Return the section after patches without a kind, or at a body, became walls. InputError if periodic."""
+    """Return `section`; patches without a kind and those on a body become walls. InputError if periodic."""
     if any(connection.transform for connection in section.connections):
         raise InputError("the section is periodic", "leave its periodic connections out")
     patches: list[Patch] = []

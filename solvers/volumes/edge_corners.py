@@ -113,7 +113,7 @@ def closed_place(faces: SixFaces) -> Place | None:
 
 
 def next_to_faces(counts: tuple[int, int, int]) -> Iterator[tuple[tuple[Side, ...], Ranges]]:
-    """Yield each set of one, two or three faces that meet, and index ranges of inner nodes next to all."""
+    """Yield each set of 1 to 3 faces that meet, and index ranges of inner nodes next to every one of them."""
     for size in (3, 2, 1) if min(counts) > 2 else ():
         for sides in combinations(FACES, size):
             if len({PLACES[side][0] for side in sides}) == size:

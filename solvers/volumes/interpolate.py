@@ -34,7 +34,7 @@ def arc_laws(faces: SixFaces) -> Laws:
 
 
 def mean_laws(laws: Laws) -> Laws:
-    """Return parameters along edges (see `uniform_laws`), averaged over the four edges of each direction."""
+    """Return `laws`, parameters along edges (see `uniform_laws`), as means over four edges per direction."""
     xi, eta, zeta = (np.tile(law.mean(axis=0), (4, 1)) for law in laws)
     return xi, eta, zeta
 

@@ -26,7 +26,8 @@ SWEEPS, FIRST = 12, 30  # on the coarsest level: in a cycle, and to start with
 class Transfer:
     """Interpolations along one direction between a multigrid level and the next coarser one.
 
-    Each is a pair: for each new node, the index of an old node, and weights of this node and those after it.
+    Each is a pair of arrays, with a row for each node that gets a value: the index of the first node that it
+    is interpolated from, and the weights of that first node and of those after it.
     """
 
     up: tuple[NDArray[np.intp], Floats]  # (n, 2) linear interpolation to the fine nodes
@@ -59,7 +60,7 @@ class Level:
 
 
 class VolumeMultigrid:
-    """Multigrid cycles inside `faces`, with `sweeps` relaxations before and after each coarse correction."""
+    """Multigrid cycles in a volume with `faces`; `sweeps` relaxations precede and follow coarser levels."""
 
     def __init__(self, faces: SixFaces, sweeps: int = 1, factor: float = 1.0) -> None:
         self.levels = [Level(faces, coarse=False)]

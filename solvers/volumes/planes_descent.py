@@ -14,8 +14,8 @@ from meshonet.solvers.energy.hexes import HexProblem, Slides, descent_of
 class PlanesDescent(HexProblem):
     """Minimisation of a grid functional over the inner nodes of a volume `planes` (3, ni, nj, nk), in place.
 
-    In each direction, the target length of cell edges is their mean length on the volume's edges. With
-    `cubes`, all directions have the same target length.
+    In each direction, the target length of cells is their mean length on the volume's four edges in this
+    direction. With `cubes`, all directions have the same target length.
     """
 
     def __init__(self, planes: Floats, cubes: bool = False) -> None:
