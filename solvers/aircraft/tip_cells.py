@@ -40,7 +40,7 @@ def last_cells(points: Floats, section: Indices, even: Floats, first: float, gro
 
     `points` (p, 3) are the nodes of this surface; those with indices `section` are on the wing. There, cells
     are `first` high. Away from the wing the height increases to sqrt(first * even) within a distance that is
-    shorter for a larger growth ratio `growth`. `even` (p,) are mean heights of the cells inboard of them.
+    shorter for a larger growth ratio `growth`. `even` (p,) are mean heights of cells inboard of the nodes.
     """
     wing = points[section]
     away = np.array([norms(wing - point).min() for point in points])
