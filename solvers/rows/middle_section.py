@@ -29,14 +29,16 @@ _TRIES, _NEAR = 4, 0.03  # largest number of choices of counts; sufficient relat
 
 
 def coarse_section(
-    plane: SectionPlane, template: Template = TEMPLATES[0], corners: str = CORNERS[0]
-) -> Layout:
+    plane: SectionPlane, template: Template | None = None, corners: str = CORNERS[0]
+) -> Layout:  # fmt: skip
     """Return a coarse, optimised block layout of a section, beyond the outer edge of the blade's layers.
 
-    `corners` says when nodes are put at the corners of this edge, see `CORNERS`. Raises InputError if there
-    is no room for inlet or outlet; NoValidGridError if cells are folded.
+    `template` makes the first blocks; None: the first of the `TEMPLATES`. `corners` says when nodes are put
+    at the corners of the outer edge, see `CORNERS`. Raises InputError if there is no room for inlet or outlet;
+    NoValidGridError if cells are folded.
     """
-    return _sized(template(plane.cascade.passage, at_corners=corners == CORNERS[0]), FIRST, None)
+    make = template or TEMPLATES[0]
+    return _sized(make(plane.cascade.passage, at_corners=corners == CORNERS[0]), FIRST, None)
 
 
 def middle_section(
