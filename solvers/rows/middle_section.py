@@ -34,8 +34,8 @@ def coarse_section(
     """Return a coarse, optimised block layout of a section, beyond the outer edge of the blade's layers.
 
     `template` makes the first blocks; None: the first of the `TEMPLATES`. `corners` says when nodes are put
-    at the corners of the outer edge, see `CORNERS`. Raises InputError if there is no room for inlet or outlet;
-    NoValidGridError if cells are folded.
+    at corners of the outer edge, see `CORNERS`. Raises InputError if there is no room for inlet or outlet,
+    and NoValidGridError if cells are folded.
     """
     make = template or TEMPLATES[0]
     return _sized(make(plane.cascade.passage, at_corners=corners == CORNERS[0]), FIRST, None)
