@@ -70,7 +70,7 @@ class Values:
         return [self._below(key, value, below) for value in values]
 
     def entry(self, key: str, k: int, of: int, below: int) -> int:
-        """Return entry `k` of the list of `of` integers at `key`; entries may be from 0 to `below` - 1."""
+        """Return entry `k` of the list at `key`, which must have `of` integers from 0 to `below` - 1."""
         values = self.data.get(key)
         if not isinstance(values, list) or len(values) != of:
             raise self.error(f"{key} are not {of} numbers")

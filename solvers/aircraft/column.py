@@ -93,8 +93,8 @@ def planned_column(
 ) -> tuple[ColumnPlan, list[ColumnLevel]]:
     """Return numbers of cells for patches at a wing, a fin or both, and the patches on each surface.
 
-    The surfaces are nested around the body. ``holes[k]`` are sections on these surfaces: of the wing, or of
-    the fin, which comes last. Cells next to them are `first` high and grow by at most `growth`.
+    The surfaces are nested around the body. `holes` has one item for each, the wing first: its sections on
+    all surfaces. Cells next to these sections are `first` high and grow by at most `growth`.
     """
     corners = planned_corners([hole for each in holes for hole in each])
     collars, levels = zip(*(planned_collar(each, corners, first, growth) for each in holes), strict=True)

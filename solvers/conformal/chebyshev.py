@@ -57,7 +57,7 @@ class Panels(NamedTuple):
 
 
 def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> Panels:
-    """Return panels: intervals of `eta` in which grid levels are interpolated from `NODES` points each.
+    """Return panels: intervals of `eta` with `NODES` points, from which the levels inside are interpolated.
 
     Panels lie between the levels `first` and `last` - 1; there are none if they would not save work. `eta`
     (nj,) ascends from 0 at the wall to 1 at the far field. The domain is mapped onto a strip of mean width

@@ -38,7 +38,7 @@ class Field:
 
     @classmethod
     def of(cls, nodes: Floats, sources: Indices, areas: Floats, near: float, points: Indices) -> Self:
-        """Return the field by which the nodes with indices `points` (m,) follow the nodes `sources` (k,).
+        """Return the field by which nodes `points` (m,) move with nodes `sources` (k,); both are indices.
 
         `areas` (n,) are the lengths or areas that belong to the `nodes` (n, d); `near` is as in `Field`.
         """

@@ -105,7 +105,7 @@ class Front:
 def opening(behind: Floats, higher: Floats) -> Floats:
     """Return the heights (n,) of first cells along a wake, divided by the first-cell height at the wall.
 
-    `behind` (n,) are distances behind the trailing edge, in chords. `higher` (n,) is added to these ratios.
+    `behind` (n,) are distances behind the trailing edge, in chords. `higher` (n,) is added to the results.
     """
     return np.asarray(1.0 + _OPENING * behind**2 / (behind + _NEAR) + higher)
 

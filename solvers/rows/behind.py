@@ -22,7 +22,7 @@ _KEPT = 0.4  # smallest accepted ratio of a cell's smallest Jacobian after the m
 
 
 def even_behind(sections: Sequence[KeySection], columns: Indices) -> tuple[KeySection, ...]:
-    """Return the sections with nodes behind the blade moved to smooth lines along the span.
+    """Return the sections; nodes behind the blade are moved onto smooth lines along the span.
 
     Sections are at the heights `key_heights`. `columns` (k, m) are the nodes on k grid lines through the
     layers. They stay, and nodes near them move less. All nodes move less if cells would get too small.

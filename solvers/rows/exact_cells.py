@@ -18,7 +18,7 @@ def exact_in_corners(
 
     Parameters
     ----------
-    nodes, begins : (..., 3) nodes, and the first and second point of each node, in the same coordinates.
+    nodes, begins : (..., 3) nodes; (first points, second points), each (..., 3), in the same coordinates.
     sizes : distance from the first point (one number for all nodes) and from the second point (an array).
     in_space : maps coordinates to x, y, z.
     """

@@ -28,10 +28,10 @@ class Symmetry(NamedTuple):
 def symmetry_of(surface: Surface, axis: str | None, far: float) -> Symmetry:
     """Return the planes of symmetry of a surface that is marched to the distance `far`.
 
-    `axis` is the normal of the planes (x, y or z), ``none`` for no plane, or None to detect planes. Grid
-    lines would cross a plane that much of the surface faces from a distance below `far`. A detected plane of
-    this kind is left out. Raises InputError if a plane normal to a given `axis` is of this kind, or if no
-    plane normal to this axis contains open edges of the surface.
+    `axis` is the normal of the planes (x, y or z), ``none`` for no plane, or None to detect planes. If
+    much of the surface faces a plane and is nearer to it than `far`, grid lines would cross the plane. Such a
+    plane is left out if it was detected. Raises InputError if there is such a plane normal to a given `axis`,
+    or if no plane normal to this axis contains open edges of the surface.
     """
     planes, inside = symmetry_planes(surface, axis)
     kept, notes = [], []
