@@ -143,7 +143,8 @@ def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
         needed = NEEDED[metric]
         raise InputError(f"{metric} needs {needed}", f"use quality {needed}", parameter="fail_on")
     if metric not in names:
-        known = meant(metric, names) + "use one of " + ", ".join(names)
+        known = meant(metric, names) + "use one of " + ", ".join(("folded", *ALL_NAMES, *more))
+        known += ", or another that the documentation's page on quality lists"
         raise InputError(f"metric {metric!r} is not known", known, parameter="fail_on")
     if statistic and (statistic not in _STATISTICS or metric not in ALL_NAMES):
         known = "one of " + ", ".join(_STATISTICS) if metric in ALL_NAMES else f"no statistic with {metric}"
