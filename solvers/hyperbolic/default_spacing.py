@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
@@ -20,8 +21,10 @@ PART = 0.05
 MOST = 0.25  # the same where rows are few, so that they grow by no more than `GROWTH`
 GROWTH = 1.2  # largest ratio of neighbouring rows
 CHOSEN = "{first_cell} is not given: the first-cell height follows from the length of the shortest wall cell"
-TALL, TALL_AROUND = 0.75, 0.006
+TALL, TALL_AROUND = 0.75, 0.02
 """First-cell heights above which marched lines bunch: C grids, per smallest wall cell; O grids, in chords."""
+CHECKED, ABRUPT = 0.002, 2.0
+"""First-cell height (chords) above which marched O grids are checked, and largest permitted growth ratio."""
 _TALLEST = 3000  # rows beyond which the power of the growth ratio would exceed the range of numbers
 STEEPEST = 1.3  # growth beyond which marched grids have larger angles than variational ones
 
@@ -37,6 +40,19 @@ def too_tall(boundary: Boundary, height: float) -> bool:
     if boundary.topology == "c":
         return height > TALL * _smallest(boundary)
     return height > TALL_AROUND * boundary.chord
+
+
+def is_abrupt(boundary: Boundary, height: float, growth: float | None, nodes: Floats) -> bool:
+    """Return whether marched `nodes` (ni, nj, 2) around a body change their height abruptly along a line.
+
+    This happens at trailing edges if first cells, of `height` in the unit of the boundary, are much higher
+    than wall cells are long. `growth` is the prescribed growth ratio, if any.
+    """
+    if boundary.topology == "c" or height <= CHECKED * boundary.chord:
+        return False
+    cells = norms(np.diff(nodes, axis=1))
+    ratios = cells[:, 1:] / np.maximum(cells[:, :-1], 1e-300)
+    return bool(max(ratios.max(), 1.0 / max(ratios.min(), 1e-300)) > ABRUPT * (growth or 1.0))
 
 
 def _smallest(boundary: Boundary) -> float:

@@ -12,7 +12,7 @@ from meshonet.geometry.arrays import Topology
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
-from meshonet.solvers.hyperbolic.default_spacing import too_tall
+from meshonet.solvers.hyperbolic.default_spacing import is_abrupt, too_tall
 from meshonet.solvers.hyperbolic.march import check_layers
 from meshonet.solvers.layers.first_cells import Heights
 from meshonet.solvers.pipeline.fallback import guard
@@ -57,8 +57,11 @@ class Layered(Wrapper):
         heights = heights_of(self.request, boundary)
         if self.request.at_walls and boundary.topology in self.marched:
             refuse(self.request.chosen, MARCHED)
-            if self.request.method == "hyperbolic" or not too_tall(boundary, heights.south):
-                return self._march(boundary)
+            marched = self.request.method == "hyperbolic"
+            if marched or not too_tall(boundary, heights.south):
+                solution, growth = self._march(boundary), self.request.growth
+                if marched or not is_abrupt(boundary, heights.south, growth, solution.grid.nodes):
+                    return solution
             check_layers(self.request.height() or 0.0, self.request.growth)
         elif heights.any and self.request.refine:
             raise InputError("{refine} with first cells of given heights", "use a finer {res} instead")
