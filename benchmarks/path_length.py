@@ -47,7 +47,8 @@ def code_objects(command: list[str]) -> dict[Path, list[tuple[int, str]]]:
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder, "entered")
         environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-        program = [sys.executable, "-c", WATCHED, str(place), *command]
+        words = [str(Path(word).resolve()) if Path(word).exists() else word for word in command]
+        program = [sys.executable, "-c", WATCHED, str(place), *words]
         subprocess.run(program, cwd=folder, env=environment, check=True)
         for line in place.read_text().splitlines():
             path, number, name = line.split("\t")
