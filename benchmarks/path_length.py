@@ -47,7 +47,10 @@ def code_objects(command: list[str]) -> dict[Path, list[tuple[int, str]]]:
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder, "entered")
         environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-        words = [str(Path(word).resolve()) if Path(word).exists() else word for word in command]
+        words = [  # outputs stay in the folder
+            str(Path(word).resolve()) if before != "-o" and Path(word).exists() else word
+            for before, word in zip(["", *command], command, strict=False)
+        ]
         program = [sys.executable, "-c", WATCHED, str(place), *words]
         subprocess.run(program, cwd=folder, env=environment, check=True)
         for line in place.read_text().splitlines():
