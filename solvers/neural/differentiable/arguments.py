@@ -12,8 +12,8 @@ from meshonet.geometry.errors import InputError
 def check_sides(least: int, nj: int = 2, **sides: Tensor) -> None:
     """Raise InputError unless `sides`, each a tensor (..., n, 2), can bound a batch of grids.
 
-    `sides` are pairs of opposite sides, such as south and north, then west and east. `least` is the least
-    number of nodes of a side. `nj` is the number of nodes from wall to far field of grids around bodies.
+    Opposite sides follow each other: south, north, west, east. `least` is the least number of nodes of a
+    side. `nj` is the number of nodes from wall to far field of grids around bodies.
     """
     names = list(sides)
     first = sides[names[0]]

@@ -27,10 +27,10 @@ class Equations(Protocol):
         ...
 
     def adjoint(self, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
-        """Return the derivatives (batch, 2, ni, nj) of functionals of grids with respect to boundary nodes.
+        """Return derivatives (batch, 2, ni, nj) of a function of each grid with respect to boundary nodes.
 
-        `nodes` are the solutions and `number` (batch,) the numbers that `solve` returned. `gradient` has the
-        derivatives with respect to all nodes. The result has no meaning at inner nodes.
+        `nodes` and `number` (batch,) are the results of `solve`. `gradient` has the function's derivatives
+        with respect to all nodes. The result is meaningless at inner nodes.
         """
         ...
 
@@ -67,10 +67,7 @@ class Adjoint(FirstDerivative):
 
     @staticmethod
     def forward(equations: Equations, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
-        """Return the derivatives of functionals with respect to boundary nodes; they are 0 at inner nodes.
-
-        Arguments and shapes are those of `Equations.adjoint`.
-        """
+        """Return the result of `Equations.adjoint` for these arguments, with 0 for inner nodes."""
         most, scaled = equations.most(nodes), nodes / unit_of(nodes)
         (result,) = in_parts(lambda *part: (equations.adjoint(*part),), most, scaled, number, gradient)
         inner(result).zero_()

@@ -59,10 +59,10 @@ class Optimum:
         return newton(nodes + bordered(inner(start - nodes)), smoothness), smoothness
 
     def adjoint(self, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
-        """Return derivatives (batch, 2, ni, nj), by boundary nodes, of one scalar function of each grid.
+        """Return derivatives (batch, 2, ni, nj) of a function of each grid with respect to boundary nodes.
 
         `nodes` are the grids that `solve` returns, `number` (batch,) the weights of their smoothness terms.
-        `gradient` has its derivatives by all nodes. The result has no meaning at inner nodes.
+        `gradient` has the function's derivatives by all nodes. The result is meaningless at inner nodes.
         """
         functional = Functional(Weights().shape, number)
         with torch.enable_grad():

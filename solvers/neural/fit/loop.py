@@ -38,7 +38,7 @@ class Task(nn.Module):
         """
 
     def differentiate(self, parts: Tensor, team: Team) -> None:  # noqa: ARG002 - subclasses use it
-        """Compute the parameters' gradients of the loss, the sum of `parts`, in this process of `team`."""
+        """Compute the gradient of the loss, which is the sum of `parts`, with respect to the parameters."""
         parts.sum().backward()
 
     def validate(self) -> dict[str, float]:

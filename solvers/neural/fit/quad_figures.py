@@ -23,9 +23,9 @@ def held_out_figures(answers: Grids, base: Grids, winslow: Grids, variational: G
 
     Nodes are complex numbers. `answers` (m, 2, n, n) are the network's Winslow and variational grids, made
     from the grids `base` (m, n, n). The solvers' grids are `winslow` and `variational`. In the names, ``max``
-    is the largest cell angle of a grid, ``mean`` the mean of the largest angles of its cells. If such an
-    angle is W in `winslow`, V in `variational` and P in the network's variational grid, the gain is
-    sum(W - P) / sum(W - V) over the domains whose grids for W and P have no folded cells.
+    is the largest cell angle of a grid, and ``mean`` the mean of the largest angles of its cells. A ``gain``
+    is sum(W - P) / sum(W - V): W is such an angle in `winslow`, P in the network's variational grids, V in
+    `variational`. The sums leave out domains for which `winslow` or the network's grid has folded cells.
     """
     solved, best = angles(winslow), angles(variational)
     valid = solved[0] < 360.0
@@ -74,8 +74,9 @@ def excess(z: Tensor, goal: Tensor) -> tuple[Tensor, Tensor, Tensor]:
 
     Both grids have complex nodes (batch, m, n). The first two measures compare the greatest angle of each
     cell. They are the increases from `goal` to `z`, in radians, of its mean and of its maximum over all
-    cells; decreases count as 0. The third is for folded or nearly folded cells. It grows with greatest
-    angles above 172 degrees (`WIDE`) and least angles below 2 degrees (`NARROW`) if worse than in `goal`.
+    cells; decreases count as 0. The third grows with cells that are folded, or nearly so, and worse than in
+    `goal`: the greatest angle is larger than in `goal` and above 172 degrees (`WIDE`), or the least is
+    smaller than in `goal` and below 2 degrees (`NARROW`).
     """
     least, most = extremes(z)
     with torch.no_grad():

@@ -48,7 +48,8 @@ class Quads:
 def quads_of(datasets: Iterable[Iterable[Grid]]) -> Quads:
     """Return the domains for which `datasets` have a grid by ``winslow`` and a grid by ``variational``.
 
-    The first grid of a dataset tells its method. Raises InputError as `quads`, or if methods are not these.
+    The first grid of a dataset tells its method. Raises InputError if another method occurs, if one of the
+    two is missing, or if `quads` raises it.
     """
     groups: dict[str, list[Grid]] = {}
     for dataset in datasets:

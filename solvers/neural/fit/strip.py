@@ -78,7 +78,7 @@ class StripTask(Task):
         return list(decode(out.numpy().astype(np.float64), self.basis, self.scale, size))
 
     def figures(self, epoch: int) -> dict[str, Any]:  # noqa: ARG002
-        """Return held-out error quantiles of harmonic and network grids, before and after Picard steps."""
+        """Return quantiles of errors against Winslow's grids of held-out shapes, by the way to make grids."""
         test, errors = self.held_out, dict[str, list[float]]()
         for wall, far, goal, answer in zip(test.wall, test.far, test.residual, self.answers(), strict=True):
             base = harmonic(wall, far, across().eta)
@@ -110,9 +110,9 @@ def run(
     model: str,  # noqa: ARG001 - there is one
     data: Strips, plan: Plan, team: Team, held_out: int, sizes: StripSizes | None = None,
 ) -> Run:  # fmt: skip
-    """Return the run that trains the network for airfoils; the last `held_out` strips are never trained on.
+    """Return the task and the settings with which the network for airfoils is trained.
 
-    Raises InputError if less than one batch of strips remains for training.
+    The last `held_out` shapes of `data` are not used for training. Raises InputError if too few remain.
     """
     sizes, kept = sizes or StripSizes(), plan.kept(len(data), held_out, "shapes")
     torch.manual_seed(plan.seed)

@@ -37,7 +37,7 @@ def train(
     data : `Strips` for ``strip``, `Quads` for ``quad``, `list[SixFaces]` for `OF_VOLUMES`, else `Samples`.
     output : path of the model file.
     plan : settings of the training loop (see `standard`).
-    team : this process among those that train the model together.
+    team : rank and device of this process, and the number of processes that train the model together.
     recipe : settings to store in the model file.
     held_out : number of shapes that are not used for training; None: the default of the model.
     resume : whether to continue from the checkpoint that belongs to `output`.

@@ -62,9 +62,9 @@ class VolumeTask(Task):
 
         ::
 
-            loss = sum over both terms of exp(-s) L / 2 + s / 2     s: log of the term's variance, trained
-            L_winslow = mean |sum_ij a_ij X_ij|^2                   a: adjugate of the metric
-            L_faces   = mean |X - U|^2                              X: predicted nodes, U: nodes of the faces
+            loss = sum over both terms of exp(-s) L / 2 + s / 2   s: log of the term's variance, trained
+            L_winslow = mean |sum_ij a_ij X_ij|^2                 a: adjugate of metric, X_ij: 2nd derivatives
+            L_faces   = mean |X - U|^2                            X: predicted nodes, U: nodes of the faces
         """
         rng = np.random.default_rng([self.seed, 1, step])
         inner = tensor(rng.uniform(-1.0, 1.0, (self.points[0], 3))).to(rows.device)
@@ -80,7 +80,7 @@ class VolumeTask(Task):
         return torch.cat([0.5 * torch.exp(-self.spread) * both, 0.5 * self.spread.sum()[None]])
 
     def differentiate(self, parts: Tensor, team: Team) -> None:
-        """Compute the parameters' gradients of the loss, the sum of `parts`, in this process of `team`.
+        """Compute the gradient of the loss, which is the sum of `parts`, with respect to the parameters.
 
         With `model.projected`, gradients of the first two parts lose components that oppose each other.
         """
@@ -97,7 +97,7 @@ class VolumeTask(Task):
             value.grad = gradient.view_as(value)
 
     def network(self, name: str = "trained") -> VolumeNetwork:
-        """Return the networks with the current weights."""
+        """Return the network, called `name`, with the current weights for all volumes."""
         own = {key: value.detach().cpu().numpy() for key, value in self.named_parameters() if key != "spread"}
         return VolumeNetwork(name, {**own, **self.fixed})
 
