@@ -68,6 +68,16 @@ def test_asked_spacings_are_met(spacing, base, ni, le, te):
     assert min(at_nose) == pytest.approx(le, rel=0.06)
 
 
+@pytest.mark.parametrize("spacing", [name for name, law in LAWS.items() if law.place and law.sets_ends])
+def test_cells_at_the_nose_of_a_blunt_section_follow_the_law(spacing):
+    airfoil, ni = Airfoil(selig(0.12, 0.0, 3e-3)), 200
+    wall = airfoil.wall(ni, Sampling(spacing=spacing))
+    on_base = int((np.abs(wall[:, 0] - 1) < 1e-12).sum()) - 1
+    side = 0.5 * (airfoil.upper_end - airfoil.half_base)
+    expected = side * LAWS[spacing].place(np.array([2 / (ni - on_base)]))[0]
+    assert steps(wall)[ni // 2 - 6 : ni // 2 + 6].min() == pytest.approx(expected, rel=0.1)
+
+
 def test_one_spacing_alone_is_met():
     airfoil = Airfoil(selig(0.12))
     for setting in ({"te_spacing": 1e-3}, {"le_spacing": 1e-3}):

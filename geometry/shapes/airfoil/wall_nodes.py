@@ -30,7 +30,8 @@ def wall_arcs(body: Airfoil, ni: int, sampling: Sampling) -> Floats:
         raise InputError(f"{ni} nodes around an airfoil", f"use at least {least}")
     steps_given = sampling.le_spacing is not None or sampling.te_spacing is not None
     if steps_given and not LAWS[sampling.spacing].sets_ends:
-        remedy = "use tanh, cosine or curvature with it"
+        others = [name for name, law in LAWS.items() if law.sets_ends and name != "auto"]
+        remedy = f"use {', '.join(others[:-1])} or {others[-1]} with it"
         raise InputError(f"{sampling.spacing} spacing leaves no cell size to choose", remedy)
     steps = sampling.corner_steps(ni - 1)
     if sampling.spacing == "conformal":

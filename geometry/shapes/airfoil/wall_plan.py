@@ -182,8 +182,9 @@ def _natural(body: Airfoil, plan: WallCells, sampling: Sampling) -> WallCells:
     if sampling.spacing == "uniform":
         return replace(plan, te=mean, le=mean)
     le = math.pi / n * math.sqrt(0.5 * body.nose_radius * body.chord)
-    if sampling.spacing == "cosine":
-        le = side * math.sin(0.5 * math.pi / n) ** 2
+    law = LAWS[sampling.spacing]
+    if law.place and law.sets_ends:
+        le = side * float(law.place(np.array([1.0 / n]))[0])
         return replace(plan, te=le if not body.half_base else mean * min(0.5, _EDGE_STEP / n), le=le)
     edge = _EDGE_PART if sampling.spacing == "curvature" else min(0.5, _EDGE_STEP / n)
     return replace(plan, te=mean * edge, le=min(max(le, 0.05 * mean), 0.7 * mean))
