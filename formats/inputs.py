@@ -42,7 +42,8 @@ class Inputs:
     suffixes : extensions of files taken from folders and archives; empty: all that can be read.
     pick : patterns (``naca*``) for file names in folders, archives and lists; upper and lower case are equal
         and the extension may be left out. A pattern with a ``/`` is compared with the whole path.
-    shard : (k, n): only inputs k, k + n, k + 2 n, ... are yielded by `own` and `parts`.
+    shard : (k, n): share k of n of the work. The method `own` yields inputs k, k + n, k + 2 n, ...; `parts`
+        yields every n-th group of inputs. Iteration yields all inputs.
     grids_only : whether only files with grids are taken from folders and archives.
 
     Raises InputError if standard input occurs twice or is a terminal, if the shard is invalid, or if patterns
@@ -125,7 +126,10 @@ class Inputs:
         return len(list(islice(self, _BEGINNING)))
 
     def count(self) -> int | None:
-        """Return the number of inputs in the shard, counting dataset samples; None with standard input."""
+        """Return the number of all inputs over the number of shards, rounded up; None with standard input.
+
+        Each sample of a dataset counts as an input.
+        """
         if any(word in ("-", "@-") for word in self.words):
             return None
         return -(-sum(count for _, _, count in self._counted()) // self.shard[1])

@@ -54,7 +54,10 @@ def _nodes(row: Table) -> int | None:
 
 
 def cant(data: Table, default: Cant) -> Cant:
-    """Return the degrees by which a section is turned about x, or ``panel`` for the wing's dihedral there."""
+    """Return the angle in degrees by which a section is turned about x, or the word ``panel``.
+
+    This word means the mean of the wing's dihedral angles on both sides of the section.
+    """
     if "cant" not in data.data or data.data["cant"] == "panel":
         return "panel" if "cant" in data.data else default
     degrees = data.number("cant")

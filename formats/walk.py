@@ -33,7 +33,7 @@ def _readable_suffixes(*, grids_only: bool = False) -> frozenset[str]:
 
 
 class Walk:
-    """One search for the files of inputs, which counts the files found and picked.
+    """A search for files in the folders, archives and lists of files that a user named.
 
     In lists, empty lines and lines that begin with ``#`` are ignored. In folders, names that begin with a dot
     or ``__`` are ignored, and so is a folder such as ``out/`` beside a file ``out.h5``.

@@ -2,10 +2,8 @@
 
 from meshonet.geometry.errors import InputError
 
-MOST_CELLS = 20_000_000
-"""Largest number of cells of a grid if the request does not prescribe a number."""
-MOST_REFINED = 200_000_000
-"""Largest number of cells of a planar block after refinement: 3 GB of nodes."""
+MOST_CELLS = 20_000_000  # largest number of cells of a grid if the request does not prescribe a number
+MOST_REFINED = 200_000_000  # largest number of cells of a planar block after refinement: 3 GB of nodes
 
 
 def check_reach(

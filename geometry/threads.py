@@ -14,8 +14,7 @@ from meshonet.geometry.errors import InputError
 if TYPE_CHECKING:
     from meshonet.geometry.helpers import Helpers
 
-MOST = 64
-"""Largest number of threads of a kernel (``TEAM_MOST`` of ``team.h``)."""
+MOST = 64  # largest number of threads of a kernel (``TEAM_MOST`` of ``team.h``)
 
 NODES_EACH = 1 << 17
 """Smallest number of nodes per thread; starting one takes as long as a fast kernel for 5,000 nodes."""

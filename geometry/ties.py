@@ -10,8 +10,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices
 
-EQUAL = 1e-9
-"""Largest difference of two equal values, divided by the larger one."""
+EQUAL = 1e-9  # largest difference of two equal values, divided by the larger one
 _NOISE = 1e-7  # relative perturbation of costs: larger than rounding, far smaller than real differences
 
 Item = TypeVar("Item")

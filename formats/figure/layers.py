@@ -202,7 +202,10 @@ def _blocks(sizes: Floats) -> NDArray[np.intp]:
 
 
 def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
-    """Return (edge lengths along i, areas), (edge lengths along j, areas), all (n,), of n visible cells."""
+    """Return distances (n,) between lines of constant i at n visible cells, and the areas (n,) of the cells.
+
+    The second pair has the distances between lines of constant j, and the same areas.
+    """
     i, j = np.nonzero(part.mask)
     stride = max(1, len(i) // _SAMPLE)
     i, j = i[::stride] + part.i0, j[::stride] + part.j0

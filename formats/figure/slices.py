@@ -83,7 +83,7 @@ def layers(grid: Grid, at: Slice, values: list[Floats] | None) -> list[CellSheet
 
 @dataclass(frozen=True, eq=False)
 class Cut:
-    """Section through n cells: polygons (n, 12, 2), each filled up with its last corner; cell values (n,)."""
+    """Section through n cells: a polygon (12, 2) of each, whose last corner is repeated; cell values (n,)."""
 
     polygons: Floats
     values: Floats | None

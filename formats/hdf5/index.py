@@ -33,10 +33,10 @@ class Failed(NamedTuple):
 
 @dataclass
 class PartFacts:
-    """Description of a part (one file) of a dataset.
+    """Description of a part of a dataset: one of the HDF5 files that together form it.
 
-    `size` is a text on node counts and topology, which all parts have in common. `columns` has length, row
-    shape and type of each HDF5 dataset. `common` has digests of the provenance entries that all grids share.
+    `size` states node counts and topology in words; all parts have the same. `columns` has length, row shape
+    and type of each array in the file. `common` has digests of the provenance entries that all grids share.
     """
 
     path: Path

@@ -23,7 +23,10 @@ def cells_of(number: Indices) -> Indices:
 
 
 def cell_numbers(counts: Sequence[tuple[int, ...]]) -> list[Indices]:
-    """Return the cell numbers of blocks with node `counts`, from 0 through all blocks; i varies fastest."""
+    """Return, for each block, an array (ni-1, nj-1[, nk-1]) of cell numbers; `counts` are its node counts.
+
+    Numbers begin at 0 and continue from block to block; i varies fastest.
+    """
     shapes = [tuple(n - 1 for n in count) for count in counts]
     ends = np.cumsum([0, *(int(np.prod(shape)) for shape in shapes)])
     return [
@@ -33,9 +36,10 @@ def cell_numbers(counts: Sequence[tuple[int, ...]]) -> list[Indices]:
 
 
 def faces_of(side_numbers: Indices, side: Side) -> Indices:
-    """Return the edges (k, 2) or quadrilaterals (k, 4) of a part of a side with node numbers (n,) or (n, m).
+    """Return the nodes of each cell edge (k, 2) or cell face (k, 4) on a part of a block's side.
 
-    Edges have the domain on their left. The normals of quadrilaterals point out of the domain.
+    `side_numbers` (n,) or (n, m) are the numbers of the nodes in this part; `side` is the name of the side.
+    Edges have the domain on their left. The normals of faces point out of the domain.
     """
     if side_numbers.ndim == 1:
         rows = np.stack([side_numbers[:-1], side_numbers[1:]], axis=-1)

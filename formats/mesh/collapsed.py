@@ -18,7 +18,10 @@ Indices = NDArray[np.int64]
 
 
 def collapsed_edges(grid: Grid) -> Iterator[tuple[int, Side, int, Bools]]:
-    """Yield block, side, direction on the side (0 or 1), and a mask of edges of zero length along it."""
+    """Yield the places of edges of zero length: number of the block, side, direction of the edges, and mask.
+
+    The direction is 0 or 1 of the side. The mask has an entry for each edge of the side in this direction.
+    """
     for number, block in enumerate(grid.blocks):
         for side in sides_of(block.counts) if len(block.counts) == 3 else ():
             face = block.face(side)

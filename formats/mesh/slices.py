@@ -36,7 +36,8 @@ def surfaces_wanted() -> Iterator[None]:
 class IndexedNodes:
     """Nodes (ni, nj, 2 or 3) or (ni, nj, nk, 3) of a block, and how its directions relate to the file's.
 
-    Direction number d of `nodes` is number ``axes[d]`` (0 to 2) in the file. If `reversed`, i runs backward.
+    Direction d of `nodes` (0 is i) is direction ``axes[d]`` (0 to 2) of the file's arrays. If `reversed`, i
+    of `nodes` runs against it.
     """
 
     nodes: Floats
@@ -59,9 +60,9 @@ def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> 
 
     Blocks are planar if all nodes lie in one plane of constant x, y or z. They are also planar if each block
     has the same nodes twice, once in each of two such planes. This coordinate is then left out. Otherwise, or
-    inside ``with surfaces_wanted()``, blocks of one layer are surface patches, others are volumes.
-    Left-handed planar blocks and volumes are reversed along i. `places` are names of blocks in messages.
-    Raises InputError if a block has no cells.
+    inside ``with surfaces_wanted()``, blocks with one node in a direction are surface patches, others are
+    volumes. Left-handed planar blocks and volumes are reversed along i. `places` are names of blocks in
+    messages. Raises InputError if a block has no cells.
     """
     with np.errstate(all="ignore"):  # what is not finite is refused later, with its place
         slices = []

@@ -79,9 +79,9 @@ def grids_of_file(
 ) -> Iterator[Grid]:
     """Yield the grids of a file, given its blocks, its named faces and its pairs of connected faces.
 
-    Blocks that touch form one grid, and so do all surface patches. A single grid is called `name`. If there
-    are several, a grid of one named block gets the block's name, any other `name` with a number. Unnamed
-    outer edges of planar blocks get names. Raises InputError: no cells, unusable nodes, unmatched interfaces.
+    Blocks that touch form one grid, and so do all surface patches. A single grid is called `name`. Of several
+    grids, those of one named block are called like this block, the others `name` and a number. Unnamed outer
+    edges of planar blocks get names. Raises InputError: no cells, unusable nodes, unmatched interfaces.
     """
     if blocks:
         read = lattices([block.coordinates for block in blocks], [block.place for block in blocks])

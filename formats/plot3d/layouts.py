@@ -160,7 +160,7 @@ class Candidate:
         """Return the fraction of cells with the prevailing orientation; negative if values are impossible.
 
         Orientations are random if the assumed file layout is wrong. For a surface the result is reduced by
-        0.1, as its z may in truth be iblank of a planar grid. Cells beyond node 100 of an index are left out.
+        0.1, as its z may in truth be iblank of a planar grid. Only the first 100 nodes of each index count.
         """
         for block in self.blocks:
             if not all(_sane(values) for values in self.arrays(block)):

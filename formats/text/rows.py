@@ -114,8 +114,8 @@ def mostly_rows(head: bytes, counts: tuple[int, ...], least: int) -> bool:
 def table(lines: list[Line]) -> list[list[Line]]:
     """Return the rows (lines of numbers) of a text, divided into blocks by blank lines and prose.
 
-    Two numbers followed by words are a row if they are next to a row. Raises InputError at a line among rows
-    that looks like a damaged row.
+    A line of two numbers and then words is a row only if the line above or below has numbers alone. Raises
+    InputError at a line among rows that looks like a damaged row.
     """
     kinds: list[Kind] = ["blank", *map(attrgetter("kind"), lines), "blank"]
     blocks: list[list[Line]] = [[]]

@@ -10,8 +10,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.halves import with_i_reversed
 
 _NAMES = "xyz"
-FLAT = 1e-6
-"""Tolerance for nodes in the plane of symmetry or at an end of the body, in sizes of the surface."""
+FLAT = 1e-6  # tolerance for nodes in the plane of symmetry or at an end of the body, in sizes of the surface
 
 
 @dataclass(frozen=True)
@@ -48,8 +47,7 @@ class AircraftAxes:
         return replace(grid, blocks=tuple(blocks))
 
 
-FILE_AXES = AircraftAxes()
-"""The axes of a file that already has the axes of an aircraft."""
+FILE_AXES = AircraftAxes()  # the axes of a file that already has the axes of an aircraft
 
 
 def axes_of(points: Floats) -> AircraftAxes | None:

@@ -119,7 +119,10 @@ class Body:
         return np.stack([x, np.maximum(r, 0.0)], axis=1)
 
     def points(self, s: Floats, theta: Floats) -> Floats:
-        """Return points (..., 3) at arc lengths `s` (...) and angles `theta` (...) in radians."""
+        """Return points (..., 3) of the surface.
+
+        `s` (...) are arc lengths of the meridian from the nose, `theta` (...) angles in radians from -y.
+        """
         s, theta = np.broadcast_arrays(s, theta)
         x, r = np.moveaxis(self._spline(s.ravel()).reshape(*s.shape, 2), -1, 0)
         r = np.maximum(r, 0.0)

@@ -12,8 +12,7 @@ from meshonet.geometry.elementary import arctan2, cos, power, sin
 from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.polygon.corners import turning
 
-ANGLES = 513
-"""Number of angles from keel to crown at which the shape of a section is stored."""
+ANGLES = 513  # number of angles from keel to crown at which the shape of a section is stored
 _DENSE = 8  # number of points on the spline between two given points, from which the shape is interpolated
 _FEWEST_POINTS = 5
 _EXPONENTS = 1.2, 20.0  # smallest and largest exponent: from about a rhombus to about a rectangle

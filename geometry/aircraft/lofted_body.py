@@ -24,11 +24,11 @@ _LONGEST = 0.1  # largest distance of sections, in body lengths, without points 
 class LoftedBody(Body):
     """A body given by cross-sections, with a spline surface through them.
 
-    At the arc length s of the meridian and the angle theta, a point of the surface is (x, middle - up * shape
-    * cos(theta), across * shape * sin(theta)). `across` is half the width of the section, `up` half its
-    height, `middle` the y half way between keel and crown, and `shape` a factor, which is 1 for an ellipse.
-    The attributes ``meridian`` and ``y`` describe a similar body of revolution, whose radius is the mean of
-    `across` and `up`.
+    The section at x has the points (x, middle - up * shape * cos(theta), across * shape * sin(theta)). The
+    angle theta is 0 at the keel (-y) and pi at the crown (+y). `across` is half the width of the section,
+    `up` half its height, `middle` the y half way between keel and crown, and `shape` a factor, which is 1 for
+    an ellipse. The attributes ``meridian`` and ``y`` describe a similar body of revolution, whose radius is
+    the mean of `across` and `up`. Positions along the body are given as arc lengths s of this meridian.
 
     Parameters
     ----------
@@ -145,7 +145,10 @@ class LoftedBody(Body):
         return radius * flatness, radius * (2.0 - flatness), self._middle(x)
 
     def shape(self, s: Floats, theta: Floats) -> Floats:
-        """Return radii (n,) of sections at (s, theta), relative to the ellipse of equal width and height."""
+        """Return radii (n,) of sections, over those of an ellipse with the width and height of the section.
+
+        `s` (n,) are arc lengths of the meridian from the nose, `theta` (n,) angles in radians from the keel.
+        """
         arcs = self.arcs
         before = np.clip(np.searchsorted(arcs, s, side="right") - 1, 0, len(arcs) - 2)
         h = arcs[before + 1] - arcs[before]
@@ -158,7 +161,7 @@ class LoftedBody(Body):
         return hermite_piece((s - arcs[before]) / h, start, stop, h * begin, h * end)
 
     def points(self, s: Floats, theta: Floats) -> Floats:
-        """Return points (..., 3) at arc lengths `s` (...) and angles `theta` (...) in radians."""
+        """Return points (..., 3) of the surface, at `s` (...) and `theta` (...) as in `shape`."""
         s, theta = np.broadcast_arrays(s, theta)
         arcs, angles = s.ravel(), theta.ravel()
         across, up, middle = self.sizes(arcs)

@@ -27,7 +27,6 @@ class SurfaceWing:
     Around the section, the surface is divided into strips, each from root to tip. They are numbered from the
     trailing edge over the upper side to the nose and back. A strip is an array (stations, n, 3): n nodes at
     each station, with a cubic spline through them. z increases along the span; the wing ends at a constant z.
-
     Raises InputError: a strip of another shape; a line along the span on which z does not increase.
     """
 
@@ -75,7 +74,7 @@ class SurfaceWing:
 
     @property
     def z(self) -> Floats:
-        """Equally spaced z (n,) along the span, from the largest z at the root to the z of the tip."""
+        """Equally spaced z (n,) along the span, from the largest z of the root curve to the z of the tip."""
         begin = max(float(strip[0, :, 2].max()) for strip in self.strips)
         return np.linspace(begin, self.height, _LEVELS)
 
@@ -97,14 +96,20 @@ class SurfaceWing:
 
     @cached_property
     def arcs(self) -> Floats:
-        """Arc lengths (n,), in chords, of the section halfway to the tip in each of the n spanwise strips."""
+        """Arc lengths (n,), in chords, of the n strips from root to tip into which the surface is divided.
+
+        They are measured around the section half way along the span.
+        """
         z = self.z[[_LEVELS // 2]]
         lengths = [float(norms(np.diff(at_heights(strip, z)[0], axis=0)).sum()) for strip in self.strips]
         return np.array(lengths) / self.sizes(z)[0]
 
     @cached_property
     def nose(self) -> float:
-        """Place of the nose around the section; 1.25 is a quarter across the second spanwise strip."""
+        """Place of the nose around the section.
+
+        The surface has strips from root to tip. Place 1.25 is a quarter of the way across the second strip.
+        """
         z = self.z[[_LEVELS // 2]]
         rows = [at_heights(strip, z)[0] for strip in self.strips]
         edge = 0.5 * (rows[0][0] + rows[-1][-1])
@@ -138,7 +143,7 @@ class SurfaceWing:
         return float(np.interp(place, np.arange(len(self.strips) + 1), self._bounds))
 
     def places(self, arcs: Floats) -> Floats:
-        """Return places (n,) around the section at arc lengths (n,) in chords, as in `line` and `arc`."""
+        """Return places (n,) (see `line`) from arc lengths (n,), in chords, from the upper trailing edge."""
         return np.interp(arcs, self._bounds, np.arange(len(self.strips) + 1))
 
     @property

@@ -103,7 +103,7 @@ class Connection:
         return f"the connection of {own} of block {self.block} to {donor} of block {self.donor}"
 
     def stretches(self, block: int) -> list[tuple[Side, int, int]]:
-        """Return side, first and last node of each part of a planar block's sides that is connected."""
+        """Return the connected parts of a planar block's sides: side, first and last node of each."""
         return [(side, *nodes[0]) for number, side, nodes in self.ends if number == block]
 
 
@@ -182,9 +182,8 @@ def wake_nodes(south: Floats) -> int:
 def connections_of(topology: Topology, south: Floats, nj: int) -> tuple[Connection, ...]:
     """Return the connections of a block to itself: the seam of an O grid, or the wake of a C grid.
 
-    `south` (ni, 2) are the nodes of the south side. `nj` is the number of nodes along eta.
-
-    Raises InputError: an unknown topology; a C block without a wake.
+    `south` (ni, 2) are the nodes of the south side. `nj` is the number of nodes along eta. Raises InputError:
+    an unknown topology; a C block without a wake.
     """
     if topology == "quad":
         return ()

@@ -26,8 +26,7 @@ from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.blocks.patches import Kind, Patch, kind_of
 from meshonet.geometry.errors import InputError
 
-End: TypeAlias = tuple[str, Kind]
-"""Name and kind of the patch that a plane becomes."""
+End: TypeAlias = tuple[str, Kind]  # name and kind of the patch that a plane becomes
 BACK, FRONT = "back", "front"
 """Names of the planes at the first and at the last height, symmetry planes."""
 
@@ -36,10 +35,10 @@ def extruded(grid: Grid, heights: Sequence[float]) -> Grid:
     """Return the volumes of a planar `grid`, whose nodes are repeated at each z of `heights`.
 
     There are at least two heights, in increasing order. Patches and connections extend over all of them. In a
-    grid around a body, the body becomes a wall unless its patches have another kind. The sides `bottom` form
-    the symmetry plane ``back``, the sides `top` form ``front``; patches with these names are renamed.
-
-    Raises InputError: blocks that are not planar, fewer than two heights, heights that do not increase.
+    grid around a body, the body becomes a wall unless its patches have another kind. The planes at the first
+    and last height become the symmetry planes ``back`` and ``front``; other patches with these two names are
+    renamed. Raises InputError: blocks that are not planar, fewer than two heights, heights that do not
+    increase.
     """
     planar(grid)
     z = np.asarray(heights, dtype=np.float64)
@@ -80,7 +79,7 @@ def thickened(
 
 
 def plane_of_extruded(grid: Grid) -> Grid | None:
-    """Return the planar grid that `extruded` turns into `grid`; None if there is none."""
+    """Return the planar grid from which the function `extruded` makes `grid`; None if there is none."""
     if any(block.nodes.shape[3:] != (3,) for block in grid.blocks):
         return None
     z = grid.blocks[0].nodes[0, 0, :, 2]

@@ -19,8 +19,9 @@ class Member:
     """The grid lines of a block along the direction `axis` (0 is xi, 1 is eta), as a part of a family.
 
     A family has grid lines that continue each other from block to block. If `flipped` (in 2-D only), this
-    block numbers them in the other direction than the family's first block. If `aligned`, only whole sides
-    are connected, and line k continues line k of the first block, or the k-th from the end if `flipped`.
+    block numbers them in the other direction than the family's first block. `aligned` states that all
+    connections on the way from that block to this one join whole sides. Line k then continues line k of the
+    first block, or the k-th from the end if `flipped`.
     """
 
     block: int

@@ -21,8 +21,7 @@ from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.meeting_sides import meeting_sides
 from meshonet.geometry.errors import InputError
 
-TOLERANCE = 1e-6
-"""Largest distance of coincident nodes, divided by the length of the shorter of two edges."""
+TOLERANCE = 1e-6  # largest distance of coincident nodes, divided by the length of the shorter of two edges
 Stretch: TypeAlias = tuple[int, Side, int, int]
 """Part of the boundary of a planar block: block, side, first and last node."""
 Part: TypeAlias = tuple[int, Side, Range]

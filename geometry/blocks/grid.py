@@ -41,8 +41,7 @@ if TYPE_CHECKING:
 
 
 _COUNTS = attrgetter("counts")
-_MOST_SHOWN = 6
-"""Largest number of blocks whose sizes are listed in the text form of a grid."""
+_MOST_SHOWN = 6  # largest number of blocks whose sizes are listed in the text form of a grid
 
 
 @dataclass(frozen=True)
@@ -50,7 +49,7 @@ class Origin:
     """Where a sample of a dataset comes from.
 
     `parameters` are shape parameters. `split` is ``train``, ``test`` or empty. `title` is the shape's own
-    name if the sample has a different one, such as that of a file; else it is empty.
+    name, such as the first line of its file, if the sample is named otherwise; else it is empty.
     """
 
     parameters: tuple[tuple[str, float], ...] = ()
@@ -58,8 +57,7 @@ class Origin:
     title: str = ""
 
 
-UNKNOWN = Origin()
-"""Origin of a grid that is not a sample of a dataset."""
+UNKNOWN = Origin()  # origin of a grid that is not a sample of a dataset
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -123,9 +121,8 @@ class Grid(Connected):
         """Return the grid of a single block (see `Block`); its connections are found from its nodes.
 
         In the topology ``c``, the south side starts and ends with the nodes of the wake, in opposite order.
-        Without `patches`, the grid gets the `default_patches`.
-
-        Raises InputError: as `Block`; an O grid that is not closed, a C grid without a wake.
+        Without `patches`, the grid gets the `default_patches`. Raises InputError: as `Block`; an O grid that
+        is not closed, a C grid without a wake.
         """
         block = Block(nodes, finite)
         ni, nj = block.counts[:2]

@@ -18,8 +18,7 @@ from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 
-_OTHER: dict[Side, Side] = {"west": "east", "east": "west"}
-"""Sides that are exchanged if i is reversed."""
+_OTHER: dict[Side, Side] = {"west": "east", "east": "west"}  # sides that are exchanged if i is reversed
 
 
 def with_image(half: Grid) -> Grid:

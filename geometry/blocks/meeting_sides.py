@@ -30,15 +30,12 @@ AROUND: Mapping[Side, int] = {"west": -1, "east": 1, "south": 1, "north": -1}
 """Whether the nodes of a side of a planar block run counter-clockwise around it."""
 _DIRECTION = np.array([0.5403023, 0.6710117, 0.5076571])
 """Direction along which cells are sorted; as it is oblique, few cells have equal positions."""
-_MOST = 0.25
-"""Nodes farther apart than this fraction of an edge are different, whatever their rounding."""
-_FLAT = 1e-12
-"""Largest area of a cell that counts as a line, divided by the square of its longest edge."""
+_MOST = 0.25  # nodes farther apart than this fraction of an edge are different, whatever their rounding
+_FLAT = 1e-12  # largest area of a cell that counts as a line, divided by the square of its longest edge
 
 _DECIMALS = range(3, 13)  # decimal places that numbers may have been written with
 _DIGITS = range(5, 14)  # significant digits that numbers may have been written with
-_COUNTED = 400
-"""Largest number of values whose digits are counted."""
+_COUNTED = 400  # largest number of values whose digits are counted
 
 
 def meeting_sides(

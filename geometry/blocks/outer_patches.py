@@ -28,8 +28,8 @@ def owners_of(
 ) -> NDArray[np.intp]:
     """Return, for each cell (n,) or (n, m) at a side, the index of the last patch that contains it.
 
-    `inside` lists the parts of sides at connections, each as a side and an index range of nodes. Their cells
-    get `JOINED`. Other cells without a patch get `UNNAMED`. `counts` are the block's node counts.
+    `inside` lists the connected parts of the block's sides; a part is a side and an index range of nodes.
+    Its cells get `JOINED`. Other cells without a patch get `UNNAMED`. `counts` are the block's node counts.
     """
     nodes = face_counts(counts, side)
     owners = np.full([n - 1 for n in nodes], UNNAMED, dtype=np.intp)

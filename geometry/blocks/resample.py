@@ -26,9 +26,8 @@ def resample_edge(nodes: Floats, m: int, *, closed: bool) -> Floats:
     """Return `m` >= 2 nodes (m, 2) on the curve through `nodes` (n, 2), distributed like `nodes`.
 
     Corners of the curve remain nodes if `m` is large enough; the end nodes are kept bitwise. A `closed` edge
-    repeats its first node at the end, both in `nodes` and in the result.
-
-    Raises InputError: the errors of `Curve`.
+    repeats its first node at the end, both in `nodes` and in the result. Raises InputError: the errors of
+    `Curve`.
 
     >>> resample_edge(np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), 5, closed=False)[:, 0].tolist()
     [0.0, 0.5, 1.0, 1.5, 2.0]
@@ -55,7 +54,6 @@ def resample_edges(
 
     The wake is the first and the last `wake` cells of the south edge. The nodes of these two parts stay
     equal, and the fraction of the edge's cells in the wake is kept. If `closed`, south and north are closed.
-
     Raises InputError: too few nodes for a closed edge, or for the wall between the two sides of a wake.
     """
     if closed and ni < 4:
@@ -91,7 +89,10 @@ def _in_pieces(side: Floats, ends: tuple[int, ...], places: tuple[int, ...], clo
 def resample_patches(
     patches: tuple[Patch, ...], had: tuple[int, int], has: tuple[int, int], wake: int
 ) -> tuple[Patch, ...]:
-    """Return `patches` with new index ranges, after node counts (xi, eta) change from `had` to `has`."""
+    """Return `patches` with new index ranges, after node counts (xi, eta) change from `had` to `has`.
+
+    `wake` is the number of cells along the wake of a C boundary before the change, else 0.
+    """
     along_xi, along_eta = _marks(had[0], has[0], wake), _marks(had[1], has[1], 0)
 
     def moved(patch: Patch) -> Patch:

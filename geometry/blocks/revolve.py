@@ -24,12 +24,9 @@ from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.errors import InputError
 
-WEDGE_DEG = 10.0
-"""Largest angle of a wedge, which is one cell thick, in degrees."""
-CELL_DEG = 4.0
-"""Largest angle of a cell of a sector if the number of planes is not given, in degrees."""
-AXIS = "axis"
-"""Patch of sides that lie on the axis."""
+WEDGE_DEG = 10.0  # largest angle of a wedge, which is one cell thick, in degrees
+CELL_DEG = 4.0  # largest angle of a cell of a sector if the number of planes is not given, in degrees
+AXIS = "axis"  # patch of sides that lie on the axis
 FLOWS: tuple[End, End] = (("inlet", "inlet"), ("outlet", "outlet"))
 """Name and kind of the two ends of a sector through which the fluid flows about the axis."""
 _ON_AXIS = 1e-12  # over the size of the grid: nodes nearer to the axis are on it
@@ -180,12 +177,10 @@ def frame_of(points: Floats, axis: AxisLine) -> AxisFrame:
 def revolved(grid: Grid, turn: Revolution, ends: tuple[End, End] | None = None) -> Grid:
     """Return a planar grid revolved about the axis of `turn`.
 
-    The first and last plane of a wedge become the patches ``wedge1`` and ``wedge2``. For a larger angle, the
-    two planes become patches with the names and kinds `ends`, or are periodic without `ends`. For a full
-    revolution, they coincide and are connected.
-
-    Raises InputError: blocks that are not planar; periodic connections; nodes on both sides of the axis, or
-    all on the axis.
+    If there is one cell over an angle of at most 10 degrees (a wedge), the first and last plane become the
+    patches ``wedge1`` and ``wedge2``. Otherwise they become patches with the names and kinds `ends`, or are
+    periodic if `ends` is None. In a full revolution, they coincide and are connected. Raises InputError:
+    blocks that are not planar; periodic connections; nodes on both sides of the axis, or all on the axis.
     """
     planar(grid)
     if any(each.transform for each in grid.connections):

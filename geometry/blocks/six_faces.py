@@ -22,8 +22,7 @@ from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.curves.cubic import cubic_spline
 from meshonet.geometry.errors import InputError, place_of
 
-FACES: tuple[Side, ...] = tuple(PLACES)
-"""West, east, south, north, bottom, top."""
+FACES: tuple[Side, ...] = tuple(PLACES)  # west, east, south, north, bottom, top
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +86,10 @@ class SixFaces:
         return edge_of(getattr(self, side), side, second)
 
     def steps_at_edge(self, side: Side, second: Side) -> Floats:
-        """Return vectors (n, 3) towards rising index across the cells of face `side` that touch `second`."""
+        """Return the vectors (n, 3) across that row of cells of face `side` that touches face `second`.
+
+        There is a vector for each node of their common edge. It points towards the larger index.
+        """
         axis, end = PLACES[second]
         rows = np.moveaxis(getattr(self, side), axis - (axis > PLACES[side][0]), 0)
         return np.asarray(rows[1] - rows[0] if end == 0 else rows[-1] - rows[-2])

@@ -15,8 +15,7 @@ from meshonet.geometry.blocks.six_faces import FACES, SixFaces, edge_of, edges, 
 from meshonet.geometry.errors import InputError, place_of
 from meshonet.geometry.notes import Change
 
-TOLERANCE = 1e-6
-"""Largest distance between nodes of a shared edge, over the diagonal of the bounding box."""
+TOLERANCE = 1e-6  # largest distance between nodes of a shared edge, over the diagonal of the bounding box
 _NEAR = 0.2  # largest distance between matching corners, over the shortest side of a patch
 
 

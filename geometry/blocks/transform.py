@@ -29,11 +29,9 @@ from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.polygon.corners import find_corners
 
 _SIDES: dict[Side, Side] = {"east": "south", "west": "north", "south": "west", "north": "east"}
-_LENGTHS = "wall_spacing", "spacing_"
-"""First words of the provenance entries that are lengths."""
+_LENGTHS = "wall_spacing", "spacing_"  # first words of the provenance entries that are lengths
 _MOST_SCALED = 1e12  # factor beyond which a change of unit is a mistake
-_COUNTED_BACK = ("south", "north")
-"""Sides whose nodes are counted from the other end after a grid is turned."""
+_COUNTED_BACK = ("south", "north")  # sides whose nodes are counted from the other end after a grid is turned
 
 
 def coarser_grid(grid: Grid, k: int) -> Grid:

@@ -28,8 +28,7 @@ if TYPE_CHECKING:
 
 REMEDY = "correct these points: no grid can be made inside edges that cross"
 _MOST = 4096  # crossings examined; those at common ends of lines are among them and do not count
-_SEAM = 1e-6
-"""Largest distance of opposite sides that coincide, divided by the length of their shortest cell."""
+_SEAM = 1e-6  # largest distance of opposite sides that coincide, divided by the length of their shortest cell
 
 
 def check_edges(boundary: Boundary) -> None:

@@ -15,8 +15,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.sampling import Sampling
 
-Curve: TypeAlias = Callable[[Floats], Floats]
-"""Points (n, 2 or 3) at parameters (n,) from 0 to 1."""
+Curve: TypeAlias = Callable[[Floats], Floats]  # points (n, 2 or 3) at parameters (n,) from 0 to 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +47,7 @@ class CadFace:
 
 @dataclass(frozen=True, eq=False)
 class CadModel:
-    """All faces of a CAD file: a `Shape` from which no boundary of four sides can be made."""
+    """All vertices, edges and faces of a CAD file. Its method `boundary` only raises an error."""
 
     vertices: Floats  # (n, 3) positions in the unit of the file
     # edges, faces: in the order of the file

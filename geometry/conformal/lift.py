@@ -51,10 +51,11 @@ class Corner:
 class Lift:
     """The conformal map from the plane z around a body to a strip w = psi + i phi of period 2 pi.
 
-    Joukowski's map z = centre + quarter (zeta + 1/zeta) comes first. It maps a slit in the body to a circle.
+    First, z = centre + quarter (zeta + 1/zeta), solved for zeta, maps a slit in the body to a circle.
     `centre` is the middle of the slit, and `quarter` a quarter of the vector from end to end of the slit.
-    Then the maps `corners` straighten corners. `pole` is the centroid of the wall after all these maps.
-    `phase` is subtracted from phi, so that the first wall node is at 0. Attributes may be torch tensors.
+    Then the maps `corners` straighten corners; `pole` is the centroid of the resulting wall. Last, w is the
+    logarithm of the distance vector from `pole`. `phase` is subtracted from phi, so that the first wall node
+    is at 0. Attributes may be torch tensors.
     """
 
     centre: Any
@@ -71,7 +72,7 @@ class Lift:
         return self.centre + self.quarter * (zeta + 1.0 / zeta)
 
     def to_strip(self, z: Complexes) -> Complexes:
-        """Return the images w (n,) of points `z` (n,) around the body; Im w does not jump by 2 pi."""
+        """Return w (n,) at successive points `z` (n,) around the body; Im w does not jump between them."""
         return _native.lift_to_strip(self, np.ascontiguousarray(z, complex))
 
 

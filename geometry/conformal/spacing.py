@@ -41,7 +41,8 @@ def conformal_knots(
     ----------
     marks : (m,) ascending arc lengths in (0, length) at which there must be nodes.
     at : (m,) indices of the nodes at `marks`; if None, they are multiples of one of the numbers `steps`.
-    steps : descending; the first that is at most the number of cells from node 0 to the nearest mark is used.
+    steps : largest first; the first is used that is at most the number of cells, all of equal angle, between
+        the first node and the mark that is nearest to it along the circle.
 
     Raises InputError: the conformal angle does not increase along the curve; no convergence.
     """

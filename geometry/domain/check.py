@@ -13,10 +13,8 @@ from meshonet.kernels._native import crossing_segments
 
 _BUDGET = 2_000_000_000  # comparisons, some seconds; one body needs about as many as it has points
 _ROOM = 64  # pairs in addition to those that meet because they are consecutive
-_NO_AREA = 1e-14
-"""A loop narrower than this fraction of its extent counts as without area."""
-_SAME = 1e-13
-"""Points nearer than this fraction of the extent of the domain count as one."""
+_NO_AREA = 1e-14  # a loop narrower than this fraction of its extent counts as without area
+_SAME = 1e-13  # points nearer than this fraction of the extent of the domain count as one
 
 
 def check_domain(domain: Domain) -> None:

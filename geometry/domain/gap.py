@@ -13,8 +13,7 @@ IN_FRONT = 0.6
 """Cosine of the largest angle, 53 degrees, between the normal and the direction of a wall point in front."""
 _BEYOND = 1.0 + 1e-9
 """Factor on a limit, so that a value that equals the limit except for rounding does not exceed it."""
-_SAME = 1e-9
-"""Wall points nearer than this fraction of the extent of the walls are the point itself."""
+_SAME = 1e-9  # wall points nearer than this fraction of the extent of the walls are the point itself
 _AROUND_CORNER = 1.1
 """Ratio of arc length to distance up to which a point is around a corner; at 135 degrees it is 1.08."""
 _SAMPLES = 2000  # points on all walls together

@@ -10,8 +10,7 @@ from meshonet.geometry.domain.loop import Loop, turns_sharply
 from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.polygon.straights import find_kinks
 
-APART = 0.01
-"""Smallest distance of a kink from a corner or another kink, over the length of the loop."""
+APART = 0.01  # smallest distance of a kink from a corner or another kink, over the length of the loop
 
 
 def with_kinks(domain: Domain) -> Domain:

@@ -13,8 +13,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.ties import EQUAL
 
-CORNER_DEG = 30.0
-"""Turn in degrees above which a point is a corner, unless the input lists the corners."""
+CORNER_DEG = 30.0  # turn in degrees above which a point is a corner, unless the input lists the corners
 
 
 def turns_sharply(turn: Floats) -> Bools:

@@ -11,15 +11,12 @@ KINK = np.radians(8.0)
 """Radians: a larger turn is a corner if both neighbouring points turn by less than a fifth of it."""
 SHARP = np.radians(40.0)
 """Radians: a larger turn is a corner if both neighbouring turns are less than half of it or points few."""
-ALWAYS = np.radians(75.0)
-"""Radians: a larger turn is always a corner."""
-HAIRPIN = np.radians(100.0)
-"""Radians: a larger turn may be the round end of a thin body given by few points."""
+ALWAYS = np.radians(75.0)  # radians: a larger turn is always a corner
+HAIRPIN = np.radians(100.0)  # radians: a larger turn may be the round end of a thin body given by few points
 WIDENS = 0.75
 """Behind an oblique base a body widens at this fraction or more of its first rate, behind a nose at half."""
 ALONE = np.radians(50.0)  # turning beside a corner below which a sharp one may be a coarsely given round end
-FEW = 12
-"""A closed polygon with at most this many points is a polygon, not a sampled curve."""
+FEW = 12  # a closed polygon with at most this many points is a polygon, not a sampled curve
 
 
 def angle_between(a: Floats, b: Floats) -> Floats:

@@ -6,14 +6,10 @@ from meshonet.geometry.arrays import Bools, Floats, Indices, norms, rolled
 from meshonet.geometry.polygon.corners import FEW, turning
 from meshonet.geometry.ties import EQUAL
 
-LONG = 4.0
-"""An interval at least this many times as long as its neighbour on a side may be a straight line."""
-EXPLAINED = 1.25
-"""Largest turn beside a straight line, in those of the circle through the next three points."""
-LEAST = np.radians(2.0)
-"""Radians: a smaller turn is no kink."""
-ALONE = 20.0
-"""A turn that is this many times as large as both neighbouring ones is a kink."""
+LONG = 4.0  # an interval at least this many times as long as its neighbour on a side may be a straight line
+EXPLAINED = 1.25  # largest turn beside a straight line, in those of the circle through the next three points
+LEAST = np.radians(2.0)  # radians: a smaller turn is no kink
+ALONE = 20.0  # a turn that is this many times as large as both neighbouring ones is a kink
 _ROUNDING = np.radians(0.1)  # turns of rounded coordinates
 
 

@@ -15,8 +15,7 @@ from meshonet.geometry.rows.profile import BladeProfile
 from meshonet.geometry.rows.thick_edge import LEAST_EDGE, pointed, thick_edged
 from meshonet.kernels._native import spline_crossings
 
-MOST_EXTENDED = 0.2
-"""Largest part of the span by which a blade is continued to hub or casing."""
+MOST_EXTENDED = 0.2  # largest part of the span by which a blade is continued to hub or casing
 _NOTED = 0.01  # part of the span from which on a note mentions the continuation
 _CHECKED = 400  # places around the blade at which profiles are compared
 _FARTHEST = 90.0  # degrees around the axis from one profile to the next: no blade leans as much

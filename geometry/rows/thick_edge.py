@@ -65,8 +65,7 @@ def _round_end(one: Floats, other: Floats, before: Floats, beside: Floats) -> Fl
     return np.asarray(ends + 3.0 * back * t * inner)
 
 
-LEAST_EDGE = 0.01
-"""Thickness in chords to which thinner trailing edges are opened."""
+LEAST_EDGE = 0.01  # thickness in chords to which thinner trailing edges are opened
 
 
 def round_edged(airfoil: Airfoil) -> tuple[Airfoil, tuple[str, ...]]:

@@ -12,8 +12,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.outline import Outline
 
-QUARTER = (0.25, 0.0)
-"""Default centre of the twist, in chords from the leading edge."""
+QUARTER = (0.25, 0.0)  # default centre of the twist, in chords from the leading edge
 Cant: TypeAlias = float | Literal["panel"]
 MOST_CANT = 90.0  # degrees
 MOST_NODES = 10_001  # along the span

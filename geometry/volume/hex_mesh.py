@@ -23,8 +23,7 @@ FaceValues: TypeAlias = Callable[[int, Side], NDArray[Any]]
 """Function from the number of a block and a side to a view (n, m) of values at this side."""
 
 _MOST = 0.8  # a block with a larger fraction of negative cells is left-handed, others have folded cells
-POLE = 1e-12
-"""Nodes of a line nearer than this fraction of the size of the grid coincide."""
+POLE = 1e-12  # nodes of a line nearer than this fraction of the size of the grid coincide
 
 
 @dataclass(frozen=True, eq=False)

@@ -50,9 +50,10 @@ class Lattice:
 class SceneSheet:
     """A layer of cells to draw: a planar or surface block, a patch of a volume, or a layer inside a volume.
 
-    Its nodes are in array number `lattice` of the page: all of the array if `axis` is None, else those with
-    index `node` along direction `axis`. `ranges` are the first and last nodes along the two directions of the
-    layer. Inside a volume, it lies at index `at` along direction `across` (i, j or k) of the volume's block.
+    Array number `lattice` of the page contains its nodes. If `axis` is None, the array has no others;
+    otherwise the layer is at index `node` along direction number `axis` of the array. `ranges` are the first
+    and last nodes along the two directions of the layer. `across` and `at` are for a layer inside a volume:
+    it consists of the nodes with index `at` along direction `across` (i, j or k) of the volume's block.
     """
 
     lattice: int
