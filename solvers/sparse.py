@@ -107,7 +107,7 @@ class Factor:
         return x.reshape(np.shape(right))
 
     def refine(self, matrix: SparseMatrix, right: Floats, steps: int) -> Floats:
-        """Return x with ``matrix x = right`` after `steps` corrections, by the factors of a close matrix."""
+        """Return x of ``matrix x = right``, by `steps` corrections; `matrix` is close to the factored one."""
         x = self.solve(right)
         for _ in range(steps):
             x += self.solve(right - matrix.times(x))

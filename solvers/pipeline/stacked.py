@@ -19,7 +19,7 @@ Sections: TypeAlias = "Stack | Row | Aircraft"  # inputs of `meshonet stack`
 def with_tip(what: Sections, tip: Tip | None, *, surface: bool = False) -> Sections:
     """Return `what`; if `tip` is given, the tip of the stack has this shape.
 
-    Raises InputError if a row or an aircraft gets a tip, or if `surface` is set for a row.
+    Raises InputError if a row or an aircraft gets a tip, or if only the `surface` of a row is requested.
     """
     if isinstance(what, Stack):
         return what.with_tip(tip)

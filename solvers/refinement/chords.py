@@ -73,7 +73,7 @@ class Chords:
 
     @cached_property
     def multiple(self) -> Indices:
-        """Numbers (chords,) that must divide the cell counts of sets of opposite edges, for symmetry."""
+        """Divisors (chords,), for symmetry, of the cell counts of chords (sets of opposite block edges)."""
         multiple = np.ones(self.count, dtype=np.intp)
         for k, edge in enumerate(self.edges):
             own = sum(np.array_equal(distinct(to[edge]), distinct(edge)) for to in self.images)
@@ -129,7 +129,7 @@ class Chords:
         return int((along[:, 0] * along[:, 2]).sum())
 
     def along_loops(self, counts: Indices) -> Indices:
-        """Return cell counts (loops,) of boundary loops, given `counts`, those of sets of opposite edges."""
+        """Return cells (loops,) on boundary loops from `counts`, one for each set of opposite block edges."""
         mesh = self.layout.mesh
         along = np.zeros(len(mesh.domain.loops), dtype=np.intp)
         for edge in np.flatnonzero(self.wall):
@@ -164,7 +164,7 @@ class Chords:
         return self.rounded(exp(mean), self.least if least is None else least)
 
     def rounded(self, wanted: Floats, least: Indices) -> Indices:
-        """Return whole numbers near `wanted` (chords,) as cell counts, one for each set of opposite edges.
+        """Return whole cell counts near `wanted` (chords,), one for each chord (set of opposite block edges).
 
         They are multiples of the attribute `multiple` (chords,), and at least `least` (chords,).
         """

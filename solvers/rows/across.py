@@ -38,10 +38,10 @@ class ChannelLines:
     def links(self, u: Floats, start: Floats, pairs: Indices, weight: float) -> PlaceLinks:
         """Return linear conditions that keep lines across the channel from leaning more than at the start.
 
-        `u` and `start` (k,) are the present and original positions of nodes, from 0 to 1 around a blade. Each
-        line joins the two nodes with the indices in a row of `pairs` (p, 2). Lean is the tangent of the angle
-        between a line and the shortest way from its first node to the layers of the next blade. The increase
-        in lean is linearised at `u` and multiplied by `weight`.
+        `u` and `start` (k,) are present and original positions of nodes, from 0 to 1 around a blade. A row of
+        `pairs` (p, 2) has the indices of a node and of the node on the next blade to which a line leads.
+        Lean is the tangent of the angle between this line and the shortest one across the channel from the
+        same node. The increase in lean is linearised at `u` and multiplied by `weight`.
         """
         one = u[pairs[:, 0]]
         slope = np.interp(one, self.upper, np.gradient(self.lower, self.upper))
@@ -51,21 +51,21 @@ class ChannelLines:
         return PlaceLinks(pairs, factors, scale * aside - (factors * u[pairs]).sum(axis=1))
 
     def leaning(self, u: Floats, pairs: Indices) -> float:
-        """Return the mean square lean (see `links`) of lines across the channel between two blades.
+        """Return the mean square lean (see `links`) of p lines across the channel between two blades.
 
-        The lines join nodes with indices `pairs` (p, 2) at positions `u` (k,), from 0 to 1 around a blade.
+        Nodes are at `u` (k,), from 0 to 1 around each blade; `pairs` (p, 2) are indices of the ends of lines.
         """
         return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
     def weights(self, pairs: Floats) -> Floats:
-        """Return factors (p,): ``aside(pairs) ** 2`` times these is the squared lean of lines (`links`)."""
+        """Return f (p,) so that ``f * self.aside(pairs) ** 2`` are squared leans of lines (see `links`)."""
         return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
 
     def aside(self, pairs: Floats) -> Floats:
-        """Return the ideal minus the actual position (p,) of the second end of each of p lines.
+        """Return by how much (p,) the second ends of p lines would have to move to make the lines ideal.
 
-        The lines lead across the channel between two blades. `pairs` (p, 2) are the positions of both ends,
-        from 0 to 1 around a blade. With the ideal second end, a line is nearly normal to both blades' layers.
+        The lines lead from one blade to the next; ideal lines are nearly normal to the layers of both.
+        `pairs` (p, 2) are the positions of both ends of each line, from 0 to 1 around the blades.
         """
         upper, lower = (wrapped(each, _FROM) for each in (pairs[:, 0], 1.0 - pairs[:, 1]))
         return np.asarray(lower - np.interp(upper, self.upper, self.lower))

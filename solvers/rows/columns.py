@@ -12,7 +12,7 @@ _STRAIGHT, _MARCHED = 0.5, 1.5  # distances of straight and marched columns from
 
 
 def layer_columns(layout: Layout) -> Indices:
-    """Return the node indices (k, layers + 1) of k grid lines from a blade through its layers, clockwise."""
+    """Return indices (k, layers + 1) of nodes in a blade's layers: clockwise around it, and outwards."""
     blocks = [layout.blocks[number] for number in layout.layers]
     ordered, left = [blocks[0]], blocks[1:]
     while left:

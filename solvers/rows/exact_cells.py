@@ -18,9 +18,10 @@ def exact_in_corners(
 
     Parameters
     ----------
-    nodes, begins : (..., 3) nodes; (first points, second points), each (..., 3), in the same coordinates.
+    nodes : (..., 3) coordinates of nodes, which `in_space` converts.
+    begins : first points and second points, each (..., 3), in the same coordinates.
     sizes : distance from the first point (one number for all nodes) and from the second point (an array).
-    in_space : maps coordinates to x, y, z.
+    in_space : converts coordinates to x, y, z.
     """
     starts, before = [in_space(begin) for begin in begins], np.inf
     for _ in range(_ROUNDS):

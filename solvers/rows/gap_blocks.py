@@ -23,9 +23,8 @@ class GapEnds:
     """Nodes inside the blade's outline at both sides of a gap: on the blade's end, and on hub or casing."""
 
     fill: GapFill  # numbering of the nodes; those of the outline come first
-    # low, high: (n, 2) s and theta on the lower and on the upper surface
-    low: Floats
-    high: Floats
+    low: Floats  # (n, 2) s and theta on the lower surface
+    high: Floats  # (n, 2) s and theta on the upper surface
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +37,7 @@ class GapBlocks:
 
 
 def gap_ends(row: Row, places: SpanPlaces, zone: Zone, first: float, growth: float) -> GapEnds:
-    """Return nodes in the outline of a blade at both sides of a gap: on the blade's end, on hub or casing.
+    """Return nodes on the two surfaces that bound a gap: the blade's end, and hub or casing opposite to it.
 
     Parameters
     ----------
@@ -72,7 +71,7 @@ def gap_blocks(
     """Return the blocks in a gap between blade and hub or casing, from the nodes `ends` on these surfaces.
 
     `around` (k,) are the indices of the blade's nodes in a section, clockwise. `outline` (levels, k, 3) has
-    s, theta, h of these nodes (along, around and across the channel) on each level along the span.
+    these nodes on levels along the span: s along the channel, theta around the axis, h from hub to casing.
     """
     fill = ends.fill
     between = _between(row, ends.low, ends.high, zone, outline[:, fill.outline], fill, growth)

@@ -78,8 +78,8 @@ def _counts(outline: Floats, lead: int, first: float, growth: float) -> tuple[in
 def filled_outline(outline: Floats, lead: int, first: float, growth: float) -> GapFill:
     """Return the five blocks inside a clockwise outline (k, 2), with outer cells about `first` high.
 
-    `lead` is the index of the node at the leading edge. `growth` limits the ratio of neighbouring cells, also
-    to cells outside the outline, which are `first` high. Raises NoValidGridError if cells are folded.
+    `lead` is the index of the node at the leading edge. `growth` limits the size ratio of neighbouring
+    cells, and that of outer cells to `first`. Raises NoValidGridError if cells are folded.
     """
     aside, rows = _counts(outline, lead, first, growth)
     sides = outline_sides(len(outline), lead, aside)

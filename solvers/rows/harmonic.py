@@ -11,11 +11,11 @@ class HarmonicMoves:
     """Displacements of nodes that are harmonic except where prescribed.
 
     A free node moves by the mean displacement of its neighbours, weighted by inverse square distances. Both
-    nodes of a periodic pair move alike. The method `of` applies to all meshes with the same connectivity.
+    nodes of a periodic pair move alike.
 
     Parameters
     ----------
-    mesh : a mesh with this connectivity.
+    mesh : any mesh with the same connectivity as those for which moves are computed later.
     prescribed : (n,) mask of the nodes with prescribed displacements.
     """
 

@@ -101,7 +101,7 @@ def planned(
     Parameters
     ----------
     coarse : result of `coarse_section` for the middle section; None: it is computed.
-    longest : largest length, in any section, of straight grid lines to `INLET` and `OUTLET` (the keys).
+    longest : for `INLET` and `OUTLET`, largest length of the straight grid lines there, over all sections.
     wake : as in `SectionPlan`.
     gaps : whether the blade ends in a gap at the hub, and at the casing.
     """

@@ -51,7 +51,7 @@ class KeyTables:
 
 
 def key_tables(row: Row, first: float, growth: float, cells: int, zones: Sequence[Zone] = ()) -> KeyTables:
-    """Return sections of a row, with about `cells` cells each, between which nodes are interpolated later.
+    """Return grids of some sections of a row, with about `cells` cells each; others are interpolated later.
 
     `first` is the first-cell height, `growth` the growth ratio of the layers. Zones that are gaps also get
     nodes inside the blade's outline. Raises InputError if there is no room for layers, inlet or outlet, and

@@ -48,7 +48,7 @@ def middle_section(
 
     Parameters
     ----------
-    longest : largest length, in any section, of straight grid lines to `INLET` and `OUTLET` (the keys).
+    longest : for `INLET` and `OUTLET`, largest length of the straight grid lines there, over all sections.
     coarse : result of `coarse_section`; None: it is computed.
 
     Raises NoValidGridError if cells are folded.

@@ -1,7 +1,6 @@
 """Layers that rise or fall from the blade next to a narrow gap, so that their first cells lean less.
 
-Lines off the blade lie in surfaces of revolution; where the blade leans far over these, narrow cells would be
-skewed.
+Lines off the blade lie in surfaces of revolution; if it leans far over these, narrow cells would be skewed.
 """
 
 from collections.abc import Sequence
@@ -69,7 +68,10 @@ class Rise:
 def rises_of(
     row: Row, zones: Sequence[Zone], around: SpanLines, lines: SpanLines, first: float
 ) -> list[Rise]:
-    """Return the displacements of the blade's wall layers near each narrow gap at hub or casing."""
+    """Return, for each narrow gap at hub or casing, displacements of the blade's layers next to the gap.
+
+    Nodes move so that first cells (`first` high) lean less. For `around` and `lines`, see `Rise.of`.
+    """
     blade = next(zone for zone in zones if not zone.gap)
     narrow = [zone for zone in zones if zone.gap and zone.ends[0] < NARROW * first]
     rises = [Rise.of(row, zone, blade, around, lines) for zone in narrow]
@@ -85,7 +87,8 @@ def raise_layers(
     ----------
     space : (levels, k, n, 3) x, y, z by level along the span, grid line off the blade, node on the line.
     heights : (levels, k) heights of the nodes on the blade, 0 at the hub and 1 at the casing.
-    ends : for both ends of blade and gaps: the level, the next one inside, the height of the cell between.
+    ends : three arrays (2 z,) for both ends, along the span, of z zones (the blade, and its gaps at hub and
+        casing): index of the level at the end, of the next level in the zone, height of the cell between.
     first : height of first cells at the blade.
     """
     rows = space.shape[2]

@@ -103,7 +103,7 @@ class SectionPlane:
     def ending(self, near: tuple[float, float], thickest: float) -> Self:
         """Return the section with straight grid lines at inlet and outlet.
 
-        They begin at the distances `near` (in pitches) before and behind the outer edge of the blade's
+        Lines are straight beyond the distances `near` (in pitches) upstream and downstream of the blade's
         layers. The blade is thickest at u = `thickest`; u is 0 at the leading and 0.5 at the trailing edge.
         """
         one, other = self._opposite(np.array([thickest, 1.0 - thickest]))
@@ -116,7 +116,7 @@ class SectionPlane:
         return self.places[list(self.cascade.blade.corners)]
 
     def from_corners(self, arcs: Floats) -> Floats:
-        """Return arc lengths (n,) from points `arcs` (n,) on the blade to the nearest corner; inf if none."""
+        """Return distances along the blade from its arc lengths `arcs` (n,) to the nearest corner, or inf."""
         off = wrapped((arcs - self.wall_arcs(self.corners)[:, None]) / self._walls[-1])
         return np.asarray(self._walls[-1] * np.abs(off).min(axis=0, initial=np.inf))
 
@@ -149,9 +149,9 @@ class SectionPlane:
         """Points opposite each other on neighbouring blades, and how near to each other they are.
 
         Positions u are 0 at a blade's leading edge, rise to 0.5 at the trailing edge along the upper side,
-        then to 1 along the lower side. The first array (n,) has 1 - u of the points on the next blade that
-        are opposite the points at `ON_SIDE` (n,). The second (n,) has the blade's perimeter, divided by the
-        distance between the outer edges of both blades' layers, or 0 where nothing is opposite.
+        then to 1 along the lower side. `ON_SIDE` has n positions on the upper side. The first array (n,) has
+        1 - u of the opposite points, on the lower side of the next blade. The second (n,) is the perimeter
+        divided by the distance between both blades' layers, or 0 where nothing is opposite.
         """
         front, pitch = self.cascade.ring.front, np.array([0.0, self.cascade.pitch[1]])
         one, other = (front.at(self.front_arcs(u)) for u in (ON_SIDE, 1.0 - ON_SIDE))
@@ -180,7 +180,7 @@ class SectionPlane:
         return np.interp(points[:, 0], self._stations, _SHARES)
 
     def stations(self, shares: Floats) -> Floats:
-        """Return m' along the flow where `shares` (n,) are -1 (inlet), 0 and 1 (blade edges), 2 (outlet)."""
+        """Return m' along the flow at `shares` (n,), -1 (inlet) to 2 (outlet); blade edges are 0 and 1."""
         return np.interp(shares, _SHARES, self._stations)
 
     def camber(self, shares: Floats) -> Floats:

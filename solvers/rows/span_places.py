@@ -39,7 +39,7 @@ class SpanPlaces:
     def of(
         cls, planes: Sequence[SectionPlane], places: Floats, pairs: Indices, gaps: tuple[bool, bool]
     ) -> "SpanPlaces":
-        """Return places (positions of nodes around the blade) with a node at each corner.
+        """Return places (positions of nodes around a blade) with a node at each corner of its outline.
 
         Parameters
         ----------
@@ -70,7 +70,7 @@ class SpanPlaces:
         return np.asarray(np.mod(start + height * wrapped(end - start), 1.0))
 
     def evened(self, planes: Sequence[SectionPlane], growth: float, pairs: Indices) -> "SpanPlaces":
-        """Return places of nodes so that cells around a blade grow by at most `growth`; `pairs`: see `of`."""
+        """Return places with which cells along the blade grow by at most `growth`; `pairs` are as in `of`."""
         lines, corners = ChannelLines.of(planes), planes[0].corners
 
         def even(k: int) -> Floats:

@@ -80,7 +80,7 @@ def smooth_arcs(lengths: Floats, ends: tuple[Floats | float, Floats | float | No
 def smooth_cells(
     length: Floats | float, ends: tuple[Floats | float, Floats | float | None], growth: float, least: int
 ) -> int:
-    """Return the least number of cells, `least` or more, that grow by at most `growth` in `smooth_arcs`.
+    """Return how many cells, at least `least`, `smooth_arcs` needs for them to grow by at most `growth`.
 
     `length` and both cell lengths `ends` are numbers, or (n,) for n lines. The last one may be None (free).
     """
@@ -121,7 +121,7 @@ class Spacing:
 
     @classmethod
     def of(cls, lengths: tuple[float, float], ends: Ends, growth: float, cells: int) -> Self:
-        """Return node spacings by `two_sided` for lines from a shortest to a longest length, `lengths`."""
+        """Return node spacings, computed by `two_sided`, for all line lengths between the two `lengths`."""
         known = np.linspace(*lengths, _LENGTHS if lengths[1] > lengths[0] * (1.0 + 1e-9) else 1)
         return cls(lengths, (two_sided(known, ends, growth, cells) / known[:, None]).T)
 
@@ -156,7 +156,7 @@ class LineArcs:
         return cls(lengths, SpanLines.through(ahead))
 
     def parts(self, spacing: Spacing) -> Floats:
-        """Return the parameters (cells + 1, n), from 0 to 1, of nodes on the n lines with a `spacing`."""
+        """Return parameters (cells + 1, n), from 0 to 1 along n lines, of nodes with this `spacing`."""
         return self.parts_at(spacing.at(self.lengths))
 
     def parts_at(self, arcs: Floats) -> Floats:

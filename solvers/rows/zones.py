@@ -20,9 +20,8 @@ GAP_ROWS = 17  # smallest number of cells across a gap
 class Zone:
     """A part of the span: a gap, or the blade."""
 
-    # low, high: heights in the channel, 0 to 1
-    low: float
-    high: float
+    low: float  # height of its lower end in the channel, 0 to 1
+    high: float  # height of its upper end, 0 to 1
     ends: tuple[float, float]  # first and last cells along the span, in the unit of the row
     cells: int  # number of cells along the span
     gap: bool  # whether the zone is a gap
@@ -38,7 +37,7 @@ def section_cells(zones: Sequence[Zone], cells: int, growth: float) -> int:
 
 
 def fewest_cells(zones: Sequence[Zone], growth: float) -> int:
-    """Return about the smallest number of cells of a blade row in which cells grow by at most `growth`."""
+    """Return about how many cells a whole blade row needs so that cells grow by at most `growth`."""
     return round(_needed(growth) * _sections(zones))
 
 

@@ -17,8 +17,8 @@ _SAME = 1e-6  # largest difference of unit normals of the same plane
 def slides_of(grid: Grid, mesh: HexMesh) -> tuple[Slides, Bools]:
     """Return the planes or lines in which outer nodes slide, and a mask (n,) of these nodes.
 
-    A node is fixed on a patch that is not flat, between different patches in the same plane, and where three
-    planes meet.
+    Other outer nodes are fixed: those on patches that are not flat, between different patches in the same
+    plane, and where three planes meet.
     """
     fixed = mesh.outer.copy()
     known = np.zeros(len(mesh.nodes), dtype=bool)

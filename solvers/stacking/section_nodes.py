@@ -47,7 +47,7 @@ class Around:
     def law(self, height: float, length: float, nose: float | None = None) -> Callable[[Floats], Floats]:
         """Return the distribution of nodes along a side of a section, from the trailing edge to the nose.
 
-        For parameters, see `ends`. Raises InputError if none has the end cells that `ends` returns.
+        For parameters, see `ends`. Raises InputError if no distribution has the end cells from `ends`.
         """
         return TanhLaw.fitted(self.cells, *self.ends(height, length, nose))
 

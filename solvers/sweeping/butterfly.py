@@ -56,9 +56,9 @@ class CrossSection:
         return [middle + core * ((1.0 - bend) * line + bend * arc - middle) for line, arc in both]
 
     def across(self, core: float, radial: float, *, eighth: bool = False) -> tuple[Floats, Floats]:
-        """Return lengths (k,) of lines from the wall to the core, and (k,) of the core cell beyond each line.
+        """Return lengths (k,) of lines from wall to core, and lengths (k,) of core cells that continue them.
 
-        For `core`, `radial`, see `FiveBlocks`. `eighth` returns an eighth of the lines, enough for a circle.
+        For `core` and `radial`, see `FiveBlocks`. `eighth`: only an eighth of the lines, enough for a circle.
         """
         inner = self.inner(core, radial)
         lengths = [norms(side - arc) for side, arc in zip(inner, self.arcs, strict=True)]

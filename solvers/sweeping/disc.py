@@ -23,16 +23,14 @@ _TURNS = (((1, 0), (0, 1)), ((0, -1), (1, 0)), ((-1, 0), (0, -1)), ((0, 1), (-1,
 class Disc:
     """A circle and its division into cells.
 
-    Raises InputError if a value is out of its range, if the number of cells `around` the circle is no
-    multiple of four, or if the number of all `cells` is given as well.
+    Raises InputError if a value is out of its range, or if both `cells` and `around` are given.
     """
 
     radius: float  # radius in any unit
     cells: int | None = None  # approximate number of cells; None: as few as `around` permits
     first_cell: float | None = None  # first-cell height at the wall; None: about that of cells in the middle
     growth: float | None = None  # largest ratio of neighbouring cells; None: 1.2
-    # number of cells along the circle, a multiple of four. None: as `cells` requires, at least 84; or
-    # `AROUND`
+    # number of cells along the circle, a multiple of four; None: by `cells`, 84 or more; without, `AROUND`
     around: int | None = None
 
     def __post_init__(self) -> None:

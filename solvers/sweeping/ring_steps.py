@@ -17,8 +17,8 @@ def ring_steps(lengths: Floats, sizes: Floats, rows: int, first: float | None) -
     """Return the steps (k, rows) between nodes on k lines with `lengths` (k,).
 
     `sizes` (k,) are the lengths of the cells beyond the ends of the lines. Along a line, steps change by one
-    ratio from `first` to the size of the cell beyond, then stay equal. Without `first`, they change up to the
-    end. If ratios up to `LARGEST` are not enough, steps do not add up to the length of the line.
+    ratio from `first` to the size of the cell beyond, then stay equal. If `first` is None, all change up to
+    this size. If ratios up to `LARGEST` are not enough, steps do not add up to the length of the line.
     """
     most = math.log(LARGEST)
     low, high = np.full(len(lengths), 0.0 if first else -most), np.full(len(lengths), most)
@@ -40,7 +40,7 @@ def _steps(sizes: Floats, rows: int, first: float | None, rate: Floats) -> Float
 
 
 def fewest_rows(lengths: Floats, sizes: Floats, first: float | None, growth: float) -> int:
-    """Return a low estimate of how many rows `ring_steps` needs so that cells grow by at most `growth`."""
+    """Return a low estimate of the parameter `rows` of `ring_steps` for ratios of steps up to `growth`."""
     if first is None:
         return max(1, round(float((lengths / sizes).mean())) - TRIED // 2)
     even = math.ceil(float((lengths / np.maximum(sizes, first)).max()) - _CLOSE)

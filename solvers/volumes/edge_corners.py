@@ -18,10 +18,10 @@ Ranges = list[tuple[int, int]]  # first and end index of nodes along each direct
 
 
 def check_corners(faces: SixFaces) -> None:
-    """Raise InputError, which names a place, if the faces fold a cell for all positions of inner nodes.
+    """Raise InputError, which names a place, if the faces fold a cell wherever the inner nodes are.
 
     At an edge of the volume, the two faces alone determine the Jacobians of cells, which must be positive.
-    Elsewhere, the faces must leave a valid position for each inner node next to them (see `closed_place`).
+    Elsewhere, each inner node next to faces must have a position that folds no cell (see `closed_place`).
     """
     check_hand(faces)
     worst = []
@@ -97,9 +97,9 @@ def _index(faces: SixFaces, side: Side, second: Side, at: int) -> list[int]:
 
 
 def closed_place(faces: SixFaces) -> Place | None:
-    """Return i, j, k of an inner node for which there is no valid position; None if there is no such node.
+    """Return i, j, k of an inner node that folds cells wherever it is; None if there is no such node.
 
-    Only nodes next to faces are tested, since the faces restrict them (kernels/volumes/near_faces.c).
+    Only nodes next to faces are tested, with those corners of cells that lie in the faces.
     """
     for sides, ranges in next_to_faces(faces.counts):
         walls = tuple((np.ascontiguousarray(getattr(faces, side)), *PLACES[side]) for side in sides)

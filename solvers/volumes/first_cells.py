@@ -16,10 +16,10 @@ REACH = 12.0  # number of steps over which the correction decays by a factor e
 
 
 def keep_first_cells(planes: Floats, faces: SixFaces, laws: Laws) -> tuple[str, ...]:
-    """Restore first-cell heights in `planes` (3, ni, nj, nk), in place; return the names of changed faces.
+    """Restore first-cell heights at faces, in place; return the names of these faces.
 
-    `laws` are relative positions of nodes along edges. A face is changed if nodes cluster towards it.
-    The heights at its nodes are interpolated from the first-cell heights at its four edges.
+    `planes` (3, ni, nj, nk) are x, y, z of nodes, `laws` their relative positions along edges. Heights are
+    restored at faces towards which nodes cluster, by interpolation from those at the face's four edges.
     """
     kept: list[str] = []
     for axis in range(3):

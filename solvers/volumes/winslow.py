@@ -27,7 +27,7 @@ def winslow(faces: SixFaces, *, tol: float | None = None, max_cycles: int | None
     end when they change nodes by less than the discretisation error, or when the residual is `tol` times the
     residual of the transfinite interpolation. Winslow, J. Comput. Phys. 1 (1966) 149-172.
 
-    Raises InputError if the faces alone make cells folded, or if a setting is not positive. Raises
+    Raises InputError if cells fold wherever the inner nodes are or if a setting is out of its range, and
     SolverError if cycles diverge.
     """
     check_tolerances(tol, max_cycles)
