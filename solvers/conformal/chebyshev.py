@@ -57,12 +57,12 @@ class Panels(NamedTuple):
 
 
 def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> Panels:
-    """Return panels: intervals of `eta` with `NODES` points, from which the levels inside are interpolated.
+    """Return panels: intervals of `eta` in which grid levels are interpolated from `NODES` Chebyshev points.
 
-    Panels lie between the levels `first` and `last` - 1; there are none if they would not save work. `eta`
-    (nj,) ascends from 0 at the wall to 1 at the far field. The domain is mapped onto a strip of mean width
-    `height`. There the wall is a wavy line, `spread` high from trough to crest. In the strip, panels are at
-    most as long as their distance from the wall. The error is then (3 + sqrt(8))^-NODES = 6e-13.
+    `eta` (nj,) are the positions of the levels, from 0 at the wall to 1 at the far field. Panels lie between
+    the levels `first` and `last` - 1; there are none if that would not save work. The domain is mapped onto a
+    strip of mean width `height`, where the wall is a wavy line, `spread` high from trough to crest. Panels
+    are at most as long there as their distance from the wall. The error is then 6e-13.
     """
     ends: list[int] = []
     points, matrices = [np.empty(0)], [np.empty((NODES, 0))]

@@ -17,16 +17,16 @@ FEWEST = 256  # columns
 def columns(modes: Complexes) -> Floats:
     """Return a table (Q, 2, width) from which m Fourier series can be evaluated quickly at any angle.
 
-    `modes` (m, 2 K + 1) are the coefficients c_k of the series for k = 0 .. K, -K .. -1. The axes of the
-    result are the angle theta_q, the real and imaginary part of f_q, and the series. `width` is m, rounded up
-    to a multiple of `LANES`. Q is a power of two above 4 K. The sum at theta has `TAPS` terms::
+    `modes` (m, 2 K + 1) are the coefficients c_k of the series for k = 0 .. K, -K .. -1. A series becomes a
+    sum over Q angles theta_q in equal steps. All but `TAPS` terms are 0: w = 0 at |x| > 1::
 
         sum_k c_k exp(i k theta) = sum_q w(theta - theta_q) f_q,      f_q = sum_k c_k / v_k exp(i k theta_q)
         w(theta) = exp(b (sqrt(1 - x^2) - 1)),    x = Q theta / (pi TAPS),    |x| < 1,    b = 2.3 TAPS
         v_k = sum_q w(theta_q) exp(-i k theta_q),    theta_q = 2 pi q / Q
 
-    The error is about exp(-pi TAPS sqrt(1/2)) = 3e-14 of the largest mode. Barnett, Magland & af Klinteberg,
-    SIAM J. Sci. Comput. 41 (2019) C479.
+    The axes of the table are q, the real and imaginary part of f_q, and the series. `width` is m, rounded up
+    to a multiple of `LANES`. Q is a power of two above 4 K. The error is about exp(-pi TAPS sqrt(1/2)) =
+    3e-14 of the largest mode. Barnett, Magland & af Klinteberg, SIAM J. Sci. Comput. 41 (2019) C479.
     """
     count, wide = len(modes), -(-len(modes) // LANES) * LANES
     highest = modes.shape[1] // 2

@@ -18,10 +18,12 @@ def extend(boundary: Boundary) -> Floats:
     A quad grid is the bilinear interpolation of its corners plus a series for each side. An O grid is the
     linear interpolation of the centroids of wall and far-field nodes plus two series. For the side eta = 0::
 
-        quad   sum_k b_k sin(k pi xi) sinh(k pi a (1-eta)) / sinh(k pi a),     a = height / length
-        o      sum_k c_k exp(2 pi i k xi) sinh(k T (1-eta)) / sinh(k T),       T = log(outer / inner length)
+        quad  sum_k b_k sin(k pi xi) sinh(k pi a (1-eta)) / sinh(k pi a)
+        o     sum_k c_k exp(2 pi i k xi) sinh(k T (1-eta)) / sinh(k T)
 
-    c_k (k not 0) are Fourier coefficients of the side's nodes, b_k those of its nodes minus its chord.
+    b_k are sine coefficients of the differences between the side's nodes and the line through its ends, a is
+    the length of west and east divided by that of south and north. c_k (k not 0) are Fourier coefficients of
+    the side's nodes, T is log(length of the far field / length of the wall).
 
     >>> s, zero, one = np.linspace(0.0, 1.0, 5), np.zeros(5), np.ones(5)
     >>> square = Boundary(*(np.stack(edge, axis=1) for edge in [(s, zero), (s, one), (zero, s), (one, s)]))

@@ -96,10 +96,10 @@ def wavenumbers(like: Any = None, xp: Any = np) -> Any:
 
 
 def decay(k: Any, T: Any, eta: Any, xp: Any = np) -> tuple[Any, Any]:
-    """Return how much Fourier modes k of wall and far field decay up to eta, each (..., len(k), len(eta)).
+    """Return the factors by which Fourier modes k at the wall and at the far field have decayed at eta.
 
-    The factors are sinh(kT(1-eta))/sinh(kT) and sinh(kT eta)/sinh(kT). T, the height of the periodic strip
-    between wall and far field, is a number or has the shape (..., 1, 1).
+    They are sinh(kT(1-eta))/sinh(kT), 1 at the wall, and sinh(kT eta)/sinh(kT), 1 at the far field, each
+    (..., len(k), len(eta)). T, a number or (..., 1, 1), is the height of the strip between both.
     """
     k, exp = abs(k)[:, None], functions_of(xp).exp
     flat = k == 0
@@ -130,7 +130,7 @@ def to_columns(c: Any, xp: Any = np) -> Any:
 
 
 def from_columns(values: Any, xp: Any = np) -> Any:
-    """Return the Fourier modes (..., 2 MODES + 1) of functions from `COLUMNS` values at equal steps."""
+    """Return Fourier modes (..., 2 MODES + 1) of functions with `values` (..., COLUMNS) at equal steps."""
     spectrum = xp.fft.fft(values) / COLUMNS
     return xp.concatenate([spectrum[..., : MODES + 1], spectrum[..., -MODES:]], -1)
 
@@ -147,10 +147,10 @@ def picard(
         alpha w_tt - 2 beta w_te + gamma w_ee = 0
         alpha = |w_e|^2,  beta = Re(conj(w_t) w_e),  gamma = |w_t|^2
 
-    A step inverts this operator with the coefficients T^2, 0 and 1 of a uniform strip of height T. The
-    iteration ends after a step whose change is below `settled` or at least `diverged`; a change that is not
-    finite counts as infinite. `c` (2 MODES + 1, LEVELS) are the initial modes at Chebyshev points of eta. The
-    modes at the wall and at the far field do not change.
+    A step solves T^2 d_tt + d_ee = -r for the change d of w. T is the mean width of the strip, r the left
+    side above times 2 / (alpha / T^2 + gamma). The iteration ends after a step whose change is below
+    `settled` or at least `diverged`; NaN counts as infinite. `c` (2 MODES + 1, LEVELS) are the initial modes
+    at Chebyshev points of eta. The modes at wall and far field stay.
     """
     T = float((c[0, -1] - c[0, 0]).real)
     parts, grid = np.stack([c.real, c.imag]), across()

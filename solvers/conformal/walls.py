@@ -48,12 +48,11 @@ def walls(boundary: Boundary) -> StripWalls:
 
 
 def is_rough(body: StripWalls) -> bool:
-    """Return whether Fourier modes hardly resolve the spacing of the wall's nodes, so that cells may fold.
+    """Return whether wall nodes are spaced slightly too unevenly for the Fourier modes: cells may fold.
 
-    Wall and far field are curves in a strip, the conformal image of the domain. Let s be the sum of the
-    amplitudes, in radians, of a curve's highest Fourier modes. The curve is resolved if s is at most
-    `SHARPEST`. The wall of an airfoil is rough if s is larger, but below `ROUGHEST`. Raises InputError for
-    other curves that are not resolved.
+    Let s be the sum of the amplitudes (radians) of the highest Fourier modes of wall or far field in a strip,
+    the conformal image of the domain. False if s is at most `SHARPEST` for both. True if it is larger at the
+    wall of an airfoil only, and below `ROUGHEST`. Raises InputError otherwise.
     """
     n = len(body.wall)
     k = np.minimum(np.arange(n), n - np.arange(n))

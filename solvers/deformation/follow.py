@@ -38,7 +38,7 @@ class Field:
 
     @classmethod
     def of(cls, nodes: Floats, sources: Indices, areas: Floats, near: float, points: Indices) -> Self:
-        """Return the field by which nodes `points` (m,) move with nodes `sources` (k,); both are indices.
+        """Return a field by which `points` (m,) follow boundary nodes `sources` (k,), both as node indices.
 
         `areas` (n,) are the lengths or areas that belong to the `nodes` (n, d); `near` is as in `Field`.
         """
@@ -55,8 +55,8 @@ class Field:
     def transposed(self, pull: Floats) -> Floats:
         """Return the gradient (6, k) of ``(pull * u).sum()`` with respect to the motions of k boundary nodes.
 
-        From these motions, 6 numbers per boundary node, `blended` computes displacements u (m, 2) in the
-        plane. `pull` has the shape of u.
+        u (m, 2), like `pull`, are the displacements of m nodes in the plane that `blended` computes from the
+        motions. These are 6 numbers per boundary node, as from `affine`.
         """
         gathered = np.empty((6, len(self.areas)))
         force = np.ascontiguousarray(pull.T)
@@ -96,7 +96,7 @@ class Follow:
         return there
 
     def boundary_to(self, to: Floats) -> Floats:
-        """Return the nodes (n, d) with new positions on the boundary only; `to` is as in `nodes_to`."""
+        """Return all nodes (n, d), moved boundary nodes at `to` (n, d) and inner ones at their old places."""
         nodes = self.table.nodes
         there = np.where(self.sources.moved[:, None], to, nodes)
         if self.slide is not None:

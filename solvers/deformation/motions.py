@@ -86,10 +86,10 @@ def _frames(corners: Floats) -> Floats:
 
 
 def affine(places: Floats, moved: Floats, turns: Floats) -> Floats:
-    """Return coefficients (d + d², n) of the displacement a + B x of the points x that move with each node.
+    """Return the motion of each of n nodes, as coefficients of the displacement a + B x of any point x.
 
-    A column has the vector a, then the rows of the matrix B. `places` and `moved` (n, d) are the old and new
-    positions of the nodes, `turns` (n, d, d) their rotation matrices minus the identity.
+    Columns of the result (d + d², n) have a, then the rows of B. `places` and `moved` (n, d) are the old and
+    new positions of the nodes, `turns` (n, d, d) their rotation matrices minus the identity.
     """
     shift = moved - places - product(turns, places[:, :, None])[:, :, 0]
     return np.ascontiguousarray(np.concatenate([shift.T, turns.reshape(len(places), -1).T]))

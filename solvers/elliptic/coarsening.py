@@ -40,9 +40,9 @@ class Direction:
 
     @cached_property
     def differences(self) -> tuple[Floats, Floats, Floats]:
-        """Weights of the differences at each node: forward, backward and centred, (n,) each.
+        """Weights a, b, c of finite differences, each (n,), for steps h₋ and h₊ to a node's neighbours.
 
-        With the steps h₋ and h₊: x″ = 2/(h₋+h₊) [(x₊-x)/h₊ + (x₋-x)/h₋] and x′ = (x₊-x₋)/(h₋+h₊).
+        a = 2/((h₋+h₊) h₊), b = 2/((h₋+h₊) h₋), c = 1/(h₋+h₊): x″ = a (x₊-x) + b (x₋-x), x′ = c (x₊-x₋).
         """
         before, after = self._steps
         both = before + after

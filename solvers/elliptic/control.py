@@ -22,7 +22,7 @@ class Factors:
 
     @classmethod
     def none(cls, ni: int, nj: int) -> Factors:
-        """Return the function that is zero at all ni x nj nodes: a sum without terms."""
+        """Return the function of the nodes that is zero at all ni x nj nodes."""
         return cls(np.zeros((0, ni)), np.zeros((0, nj)))
 
     def values(self) -> Floats:
@@ -30,7 +30,7 @@ class Factors:
         return np.asarray(product(self.along.T, self.across))
 
     def kept(self, i: Indices, j: Indices) -> Factors:
-        """Return the function at the nodes with first index in `i` and second index in `j`."""
+        """Return this function of the nodes for the first node indices `i` and the second ones `j` only."""
         return Factors(np.ascontiguousarray(self.along[:, i]), np.ascontiguousarray(self.across[:, j]))
 
     def scaled(self, part: float) -> Factors:
@@ -47,8 +47,8 @@ class Controls:
     """Control functions φ and ψ of Winslow's equations, as logarithms of ratios of neighbouring edge lengths.
 
     The equations are α (x_ξξ + φ x_ξ) - 2β x_ξη + γ (x_ηη + ψ x_η) = 0, with the metric coefficients α, β, γ.
-    Steps in ξ are 1 on the finest multigrid level. If l is the logarithm along ξ there, it is h l on a level
-    with steps h, and φ = -(2/h) tanh(h l/2).
+    Let l be the logarithm along ξ on the finest multigrid level, where steps in ξ are 1. On a level with
+    steps h, φ = -(2/h) tanh(h l/2). The same holds for ψ and η.
     """
 
     phi: Factors  # logarithm of the ratio of neighbouring edge lengths along ξ and along η

@@ -35,9 +35,9 @@ def descend(
     """Minimise the variational functional from planar `nodes` (ni, nj, 2), in place; unfold cells first.
 
     Returns the number of iterations, and whether no cell is folded. `still` is the tolerance `tol` of
-    `variational.solve`. The minimisation ends after `most` iterations, or after `first` if the functional is
-    then at most `HARD`. If `periodic`, the grid is around a body, and ``nodes[-1]`` repeats ``nodes[0]``.
-    `stiffness`, a result of `stiffness_of`, is used as a preconditioner.
+    `variational.solve`. The minimisation ends after `most` iterations at the latest. It goes on after `first`
+    iterations only if the functional is then above `HARD`, 1.1. If `periodic`, the grid is around a body, and
+    ``nodes[-1]`` repeats ``nodes[0]``. `stiffness`, a result of `stiffness_of`, is used as a preconditioner.
     """
     ni, nj = nodes.shape[:2]
     if min(ni, nj) < 3:

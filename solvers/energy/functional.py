@@ -53,10 +53,10 @@ def value(nodes: Floats, weights: Weights) -> float:
 
 
 def relief_of(wall: Floats) -> Floats:
-    """Return factors (ni,) for the angle terms of the functional E at the nodes of a closed `wall` (ni, 2).
+    """Return factors (ni,) of the terms 1/sin⁴ of angles in the functional E, for a closed `wall` (ni, 2).
 
     Where the angle of the domain exceeds 320 degrees, as at a sharp trailing edge, the factor is sin⁴ of half
-    this angle. The least possible value of the term is then the same as for right angles. Elsewhere it is 1.
+    this angle. If a grid line halves the angle, factor times term is then 1. Elsewhere the factor is 1.
     """
     half = 0.5 * (np.pi - turning(wall[:-1], closed=True))
     share = np.where(half > 8.0 / 9.0 * np.pi, (np.maximum(sin(half), 1e-3) ** 2) ** 2, 1.0)

@@ -10,20 +10,20 @@ from typing import Literal
 
 @dataclass(frozen=True)
 class HexWeights:
-    """Weights of the functional of angles for hexahedra, or, if `power` is 0, of the functional of cubes.
+    """Weights of a functional of hexahedra that prefers right angles or, if `power` is 0, cells like cubes.
 
     u, v, w are the edges at a corner of a cell, each divided by its target length, and J = det(u, v, w). l is
     the length of an edge along one of the three index directions, divided by its target length. Δ_e log l is
     the difference of log l between two such edges that are neighbours in index direction e. N is the number
-    of cells, q is `shape`, β `smoothness` and p `power`. The functional of angles is::
+    of cells, q is `shape`, β `smoothness` and p `power`. If p is not 0, the functional is::
 
         E = mean over the corners of cells of
                 (1-q) (|u × v|² + |v × w|² + |w × u|²) / (3J) + q (|u|² |v|² |w|² / J²)^p
           + β mean of the squares of N^(1/3) Δ_e log l, for all three l, along all three directions e
 
-    For a new grid inside six faces, the target length in an index direction is the mean edge length along
-    it. For a given grid, target lengths are its smoothed edge lengths. With a cell's Jacobian matrix T
-    (trilinear map), the functional of cubes is::
+    For a new grid inside six faces, the target length in an index direction is the mean edge length along it.
+    For a given grid, target lengths are its smoothed edge lengths. If p is 0, the functional is, with a
+    cell's Jacobian matrix T (trilinear map)::
 
         E = mean over cells of the integral of |T|² / (3 det(T)^⅔)
 

@@ -86,7 +86,7 @@ class HexProblem:
         self.descent = descent_of(self.nodes, tables, 1.0 / sizes, mesh.cells, (unknowns, projections))
 
     def run(self, weights: HexWeights, most: int, epsilon: float = 0.0) -> tuple[float, float]:
-        """Do up to `most` iterations, regularised by `epsilon`; return the least Jacobian and functional."""
+        """Do up to `most` iterations with ε = `epsilon`; return the smallest Jacobian and the functional."""
         size = SIZE if epsilon > 0.0 else 0.0
         self.descent.weigh(weights.shape, weights.smoothness, weights.power, epsilon, size)
         value, smallest, done = self.descent.run(weights.gain, most, RENEWED, STILL, REACH)

@@ -43,10 +43,9 @@ def too_tall(boundary: Boundary, height: float) -> bool:
 
 
 def is_abrupt(boundary: Boundary, height: float, growth: float | None, nodes: Floats) -> bool:
-    """Return whether marched `nodes` (ni, nj, 2) around a body change their height abruptly along a line.
+    """Return whether cell heights in a marched O grid, `nodes` (ni, nj, 2), jump from one row to the next.
 
-    This happens at trailing edges if first cells, of `height` in the unit of the boundary, are much higher
-    than wall cells are long. `growth` is the prescribed growth ratio, if any.
+    `height` is that of first cells, in the unit of `boundary`, `growth` the prescribed growth ratio, if any.
     """
     if boundary.topology == "c" or height <= CHECKED * boundary.chord:
         return False

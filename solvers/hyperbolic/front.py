@@ -126,9 +126,9 @@ def distance_to_march(
 ) -> float:
     """Return the sum of the steps of a march whose last level reaches the far field.
 
-    A level advances by less than its step, because it becomes longer and is smoothed. On a circle of radius
-    r, a step s increases r by s (1 - e)/(1 + f s/r + 2 e s/r). Here e is the coefficient of the smoothing and
-    f is 1 + `settings.theta`. Other bodies get corrections fitted on airfoils.
+    Levels of the marched grid advance by less than the steps, as they become longer and are smoothed. On a
+    circle of radius r, a step s increases r by s (1 - e)/(1 + f s/r + 2 e s/r). Here e is the coefficient of
+    the smoothing and f is 1 + `settings.theta`. Other bodies get corrections fitted on airfoils.
     """
     distance = front.outer - front.inner
     around = 2.0 * math.pi * settings.dissipation / len(front.start())

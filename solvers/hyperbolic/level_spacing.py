@@ -44,9 +44,9 @@ def fastest(nodes: Floats) -> Floats:
 
 
 def even_shares(nodes: Floats, steps: Floats, rate: float, constant: int) -> Floats:
-    """Return numbers (n,) for new march steps with the same largest growth ratio of cells on all levels.
+    """Return growth of march steps for which the largest growth ratio among cells is equal on all levels.
 
-    `level_steps` makes log(step k / step (k - 1)) proportional to number k (its argument `shares`).
+    The result is `shares` (n,) of `level_steps`: log(step k / step (k - 1)) is proportional to ``shares[k]``.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def level_steps(
     Parameters
     ----------
     constant : number of equal steps at the wall; all further steps grow by one ratio.
-    edge : sharp edge of the wall, or None; steps grow less where grid lines diverge from this edge.
+    edge : sharp edge of the wall, or None. Grid lines fan out at an edge; growth then varies.
     shares : (cells,) relative growth of the steps, used in place of `constant` and `edge`:
         log(step k / step (k - 1)) is proportional to ``shares[k]``; ``shares[0]`` is 0.
 

@@ -53,9 +53,9 @@ class Measures:
     slack: Floats | float = 1.0
 
     def at(self, places: Floats, closed: bool) -> Floats:
-        """Return the values (k, n) of k functions along a curve at positions `places` (n,).
+        """Return the values (k, n) of k functions, which rise along a curve, at positions `places` (n,).
 
-        On a `closed` curve, positions may be before its start or beyond its end; the values go on rising.
+        On a `closed` curve, positions may be on any turn around it, and functions rise from turn to turn.
         """
         turns = np.zeros(len(places))
         if closed:
@@ -71,7 +71,7 @@ class Measures:
 
     @property
     def whole(self) -> Floats:
-        """(k, 1) increases of k functions from the start of the curve to its end."""
+        """Increase (k, 1) of each function in `values` from the start of the curve to its end."""
         return self.values[:, -1:] - self.values[:, :1]
 
 

@@ -52,6 +52,7 @@ class GrowthLimit:
         """Return the penalty (..., k) of each log growth ratio ρ in `growth` (..., k).
 
         It is ``change * (ρ - wanted)² + weight * max(0, |ρ| - limit)²``, but linear in |ρ| far above `limit`.
+        The preferred value `wanted`, `limit` and the factor `change` are fields of this object.
         """
         excess = np.maximum(np.abs(growth) - self.limit, 0.0)
         near = np.minimum(excess, LINEAR)

@@ -87,7 +87,7 @@ class LayerSettings:
         return min(GRADING, SPREAD * (self.limit - 1.0)) if self.limit else GRADING
 
     def below(self, growth: float) -> float:
-        """Return `growth`, a ratio for cells outside the layers, or less if `limit` requires it."""
+        """Return the ratio `growth` for cells outside layers, reduced if it is near or above `self.limit`."""
         return min(growth, 1.0 + NOMINAL * (self.limit - 1.0)) if self.limit else growth
 
     def arcs(self, length: Floats, first: float | Floats, last: Floats, cells: int) -> Floats:
@@ -108,14 +108,14 @@ class LayerSettings:
 
 
 def layer_lines(
-    columns: Floats, ends: Floats, inner: Floats, rows: int, settings: LayerSettings, first: Floats
+    columns: Floats, ends: Floats, beyond: Floats, rows: int, settings: LayerSettings, first: Floats
 ) -> Floats:
     """Return the nodes (k, rows + 1, 2) of layers along columns (k, m, 2), from the wall to `ends` (k, 2).
 
-    `inner` (k,) are the heights of the cells next to the layers, `first` (k,) the first-cell heights.
+    `beyond` (k,) are the heights of the first cells beyond the layers, `first` (k,) of those at the wall.
     """
     columns = columns + arc_parts(columns)[..., None] * (ends - columns[:, -1])[:, None]
-    lines = spaced(columns, lambda length: settings.arcs(length, first, inner / settings.join, rows))
+    lines = spaced(columns, lambda length: settings.arcs(length, first, beyond / settings.join, rows))
     exact(lines, first)
     return lines
 

@@ -47,10 +47,9 @@ PASSES = 100  # largest number of alternating corrections of first cells off edg
 def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution:
     """Return `solution` with its nodes moved along its grid lines into layers.
 
-    `solution` is a valid quad or O grid for `boundary`, preferably with rows of similar height. The result
-    has other boundary nodes than `boundary`.
-
-    Raises InputError if the boundary cannot have the heights, or if growth would exceed the limit.
+    `solution` is a valid quad or O grid for `boundary`, preferably with rows of similar height. Nodes on the
+    sides of the grid move too, so that the result has a new `boundary`. Raises InputError if the boundary
+    cannot have the heights, or if growth would exceed the limit.
     """
     check_fit(heights, boundary)
     check_columns(boundary, heights)

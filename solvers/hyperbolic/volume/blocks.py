@@ -22,7 +22,7 @@ def blocks_of(surface: Surface, lines: Floats) -> tuple[Block, ...]:
 
 
 def volume_grid(surface: Surface, blocks: tuple[Block, ...], in_plane: Indices) -> Grid:
-    """Return the grid of `blocks`; `in_plane` (k,) is the mask of the open edges in planes of symmetry."""
+    """Return the grid of `blocks`; `in_plane` (k,) is True for open edges in planes of symmetry."""
     top = blocks[0].counts[2] - 1
     sides = [
         (b, side, face_of(lattice, side)) for b, lattice in enumerate(surface.lattices) for side in _SIDES

@@ -20,8 +20,8 @@ _WIDTH, _FALL = 4, 0.35  # rings of nodes around irregular ones that are smoothe
 class Seen:
     """A neighbour of a surface node, or a ghost node that replaces one beyond an open edge.
 
-    Its position is ``own * x + sign * y + shift``, with the positions x of the surface node and y of node
-    number `base`.
+    Its position is ``own * x + sign * y + shift``. Here x is the position of the surface node, and y that of
+    node number `base`. Only for ghost nodes, `own`, `sign` and `shift` differ from their defaults.
     """
 
     base: int
@@ -35,7 +35,7 @@ class Seen:
         return self.own == 0.0 and bool((self.sign == 1.0).all())
 
     def mirrored(self, plane: Plane) -> "Seen":
-        """Return the mirror image of this neighbour in `plane`."""
+        """Return the mirror image of this node in `plane`."""
         turned = np.where(np.arange(3) == plane.axis, -1.0, 1.0)
         shift = turned * self.shift + (1.0 - turned) * plane.value
         return Seen(self.base, self.own, turned * self.sign, shift)
@@ -77,7 +77,7 @@ def march_graph(
     planes : p planes of symmetry.
     in_plane : (p, k) for each plane and each of the k open edges of the surface, whether the edge is in it.
     hollow : (n,) distances from concave edges (`meshonet.geometry.surface.hollows`).
-    splay : ghost nodes beyond free edges are 1 + `splay` times as far away as the opposite neighbours.
+    splay : nodes on free edges have ghosts 1 + `splay` times as far away as their neighbours inside.
     boost : additional smoothing at irregular nodes.
     """
     n = len(surface.nodes)

@@ -61,8 +61,8 @@ def slower_steps(steps: Floats, last_growth: Floats, growth: float) -> Floats:
 def limit_growth(lines: Floats, growth: float) -> None:
     """Move nodes along `lines` (3, n, levels), in place, so that cells grow by at most `growth`.
 
-    First cells, last nodes and lines within the limit do not change. Where growth by the limit in all cells
-    does not fill a line, its cells grow by one larger ratio.
+    First cells, last nodes and lines within the limit do not change. If a line is so long that its cells have
+    to grow by more, they all grow by the same ratio.
     """
     if math.isinf(growth):
         return

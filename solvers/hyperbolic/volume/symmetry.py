@@ -28,10 +28,10 @@ class Symmetry(NamedTuple):
 def symmetry_of(surface: Surface, axis: str | None, far: float) -> Symmetry:
     """Return the planes of symmetry of a surface that is marched to the distance `far`.
 
-    `axis` is the normal of the planes (x, y or z), ``none`` for no plane, or None to detect planes. If
-    much of the surface faces a plane and is nearer to it than `far`, grid lines would cross the plane. Such a
-    plane is left out if it was detected. Raises InputError if there is such a plane normal to a given `axis`,
-    or if no plane normal to this axis contains open edges of the surface.
+    `axis` is the normal of the planes (x, y or z), ``none`` for no plane, or None to detect planes. If much
+    of the surface faces a plane and is nearer to it than `far`, grid lines would cross the plane. A detected
+    plane is then left out; if `axis` was given, InputError is raised. It is also raised if no plane normal to
+    the given axis contains open edges of the surface.
     """
     planes, inside = symmetry_planes(surface, axis)
     kept, notes = [], []
@@ -97,7 +97,7 @@ def _named(nodes: Floats, sides: Indices, axis: int, slack: float) -> tuple[Plan
 
 
 def in_planes(surface: Surface, planes: tuple[Plane, ...], inside: Indices) -> Floats:
-    """Return nodes (n, 3) with open edges moved exactly into their `planes`; `inside` is as in `Symmetry`."""
+    """Return the nodes (n, 3), those of open edge k moved exactly into plane p where ``inside[p, k]``."""
     nodes, edges = surface.nodes.copy(), surface.open_edges
     for plane, flags in zip(planes, inside, strict=True):
         nodes[edges[flags], plane.axis] = plane.value
