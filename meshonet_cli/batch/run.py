@@ -28,7 +28,7 @@ Written = Callable[[Any, str], None]
 
 
 def each(make: Callable[..., tuple[Any, Timed]], **settings: Any) -> Make:
-    """Return a function that calls `make`, with these settings, for one member after the other."""
+    """Return a function that calls `make`, with these `settings`, for one shape or grid after another."""
     return partial(attempted, partial(make, **settings))
 
 

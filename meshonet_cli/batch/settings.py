@@ -55,7 +55,7 @@ class Engine:
         return self.name == "mpi" or self.scheduler is not None
 
     def threads(self, wanted: int | None = None) -> int | None:
-        """Return a worker's number of threads: `wanted`, else its share of the cores; None: no workers."""
+        """Return threads per worker: `wanted` if given, else cores per worker, or None without workers."""
         if wanted is not None or self.here:
             return wanted
         return 1 if self.elsewhere else max(cores() // self.jobs, 1)

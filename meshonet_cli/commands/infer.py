@@ -28,8 +28,8 @@ def infer(
     blocks: o.BlocksName = "auto",
     model: str | None = _option(
         metavar="NAME|PATH", help="Neural operator that makes the grid: a shipped model (meshonet models "
-        "lists them) or a .safetensors file. base: the conformal solver alone. Not for C grids. [default: no "
-        "operator]",
+        "lists them), a .safetensors file, or base, the conformal solver without a network. No model makes C "
+        "grids. [default: no operator]",
     ),
     polish: str = _option(
         default="auto", metavar="auto|off|N", help="Number of solver iterations after the neural operator. "

@@ -81,7 +81,7 @@ def solve_pde(
     """Make elliptic, variational or marched grids.
 
     Six surface patches, or the faces of a volume grid, are filled with a volume grid. With a first-cell
-    height, it is instead marched outwards from a surface. A multi-block grid is smoothed across interfaces.
+    height, cells are marched outwards from a surface. Multi-block grids are smoothed across interfaces.
     """
     from meshonet_cli.tasks.grids import initial_grid, write_grids
 

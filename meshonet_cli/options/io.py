@@ -102,7 +102,7 @@ class InputOptions(PrintOptions):
         """Return the inputs that `words` name, such as files and folders.
 
         From folders, all files that can be read are taken; with `grids` only grids, with `suffixes` only
-        these extensions. Raises InputError if ``--shard`` is invalid, and as `Inputs`.
+        these extensions. Raises InputError if ``--shard`` is invalid, or if `Inputs` refuses `words`.
         """
         from meshonet.formats.inputs import Inputs
 

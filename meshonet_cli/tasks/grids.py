@@ -117,6 +117,6 @@ def write_grids(
     return session.finish()
 
 
-def initial_grid(text: str | None) -> Grid | None:
-    """Return the grid in the file `text`; None for None."""
-    return None if text is None else next(read_grids(text))
+def initial_grid(path: str | None) -> Grid | None:
+    """Return the first grid in the file `path`, or None if `path` is None."""
+    return None if path is None else next(read_grids(path))

@@ -21,7 +21,7 @@ from meshonet_cli.report.delivered import Delivered
 def write_layouts(
     batch: Batch, parameters: Mapping[str, Any], far_field: float | None, *, assemble: bool = False
 ) -> int:
-    """Split domains into blocks, write the layouts, return the exit code; `assemble` joins domains before."""
+    """Write how each input, or with `assemble` their union, is split into blocks; return the exit code."""
     sampling = Sampling(far_field=far_field)
     read = partial(read_shapes, fmt=batch.files.from_format)
     make = each(_split, request=GridRequest(sampling, **parameters))

@@ -105,7 +105,7 @@ class Session:
             self.result({"input": source, "output": None, "error": line, "exit_code": code})
 
     def judge(self, row: MemberRow) -> None:
-        """Report the user's limits (gates) that a member exceeds; keep its row for the table of verdicts."""
+        """Report the quality limits that a grid exceeds; keep its `row` for the table of verdicts."""
         self.rows.append(row)
         problems = row.judgement.problems if row.judgement else ()
         self.beyond += bool(problems)
@@ -186,10 +186,7 @@ class Session:
             self._draw()
 
     def watch(self) -> None:
-        """If a single input takes over a second, show on a terminal which stage is in progress.
-
-        Nothing is shown with JSON, or if standard output is a pipe.
-        """
+        """Show on a terminal which stage is in progress, if a single input takes over a second."""
         leads = os.environ.get("RANK", "0") == "0"  # of several processes under torchrun
         if self.live and leads and not (self.as_json or self.batch or self._line or _is_pipe(1)):
             from meshonet_cli.terminal.stage_line import StageLine

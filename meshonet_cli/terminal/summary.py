@@ -23,7 +23,7 @@ LABELS = {
 
 
 def figures(quality: Quality) -> dict[str, float]:
-    """Return the values of a grid by column of the table."""
+    """Return measures of a grid for a table of many grids, by name of the column."""
     angle = quality["max_angle"]
     return {"folded": quality.folded, "max_angle": angle.max, "mean_angle": angle.mean}
 
@@ -35,7 +35,7 @@ def gates_not_met(judgement: Judgement | None) -> list[str]:
 
 @dataclass(frozen=True)
 class MemberRow:
-    """A row of the table: a member and its values by column; a failed member has no values."""
+    """Name, quality and verdict of a grid, a row of `BatchSummary`; `figures` is empty for a failed input."""
 
     label: str
     figures: Mapping[str, float] = field(default_factory=dict)

@@ -64,11 +64,11 @@ def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
 
 
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
-    """Return where, on a wing's section, grid lines to the corners of the rectangle `box` begin.
+    """Return at which nodes of a wing's section grid lines to the corners of the rectangle `box` begin.
 
     The first number counts nodes from the middle of the trailing edge: there, lines to the rear corners
     begin. The second counts nodes from the nose: there, lines to the front corners begin. Both are at least
-    `fewest`. `root` (n, 2) are the nodes of the section: lengths along and around the body.
+    `fewest`. `root` (n, 2) has two coordinates of each node: its distance along the body, and around it.
     """
     normals, half = _normals(root), (len(root) - 1) // 2
     tried = np.arange(fewest, half // 3 + 1)
@@ -89,7 +89,7 @@ def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
 
 
 def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]:
-    """Return cell lengths on the rear and front of `box`; `corners` are numbers of cells on half of each."""
+    """Return the lengths of 2 `corners[0]` equal cells on the rear of `box`, 2 `corners[1]` on its front."""
     edge, nose = corners
     return (box.high - box.low) / (2 * edge), (box.high - box.low) / (2 * nose)
 
@@ -97,8 +97,8 @@ def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]
 def outer_loop(root: Floats, box: Rectangle, corners: tuple[int, int]) -> Floats:
     """Return n nodes on the rectangle `box`, one for each of the n nodes `root` of a wing's section.
 
-    Nodes are (n, 2): lengths along and around the body. The first half of `root` runs from the middle of the
-    trailing edge along the upper side to the nose. For `corners` see `corner_nodes`.
+    Nodes (n, 2) are distances along and around the aircraft's body. The first half of `root` runs from the
+    middle of the trailing edge along the upper side to the nose. For `corners` see `corner_nodes`.
     """
     half = (len(root) - 1) // 2
     edge, nose = corners
@@ -144,7 +144,7 @@ def collar(
     Parameters
     ----------
     first, last : lengths of cells at the root, and (n,) at the outer loop.
-    straight : 0: lines of an elliptic preliminary grid; 1: parabolas normal to the root; between: a mixture.
+    straight : from 0 (lines as in an elliptic grid) to 1 (nearly straight lines, normal to the root).
     """
     arcs, lines = _lines(root, outer, straight)
     wanted = _rows(arcs, rows, first, last)

@@ -45,12 +45,12 @@ class Hole:
 
     @cached_property
     def box(self) -> Rectangle:
-        """Rectangle around a wing's section: limits along the body and around it, in the unit of x, y, z."""
+        """Rectangle around the section, as distances along and around the body, in the unit of x, y, z."""
         return rectangle(self.section, self.within, self.scale)
 
     @property
     def plane(self) -> Floats:
-        """Nodes (n, 2) of the wing's section: lengths along and around the body, in the unit of x, y, z."""
+        """Distances (n, 2) of the section's nodes along and around the body, in the unit of x, y, z."""
         return self.section * self.scale
 
     @property
@@ -78,7 +78,7 @@ class CollarPlan:
 
 
 def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
-    """Return where, on a wing's section, grid lines to the corners of the rectangle around it begin.
+    """Return at which nodes of a wing's section grid lines to the corners of a rectangle around it begin.
 
     The first number counts nodes from the trailing edge, for the rear corners; the second counts nodes from
     the nose, for the front corners. Both are means over the sections `holes`.
@@ -91,7 +91,7 @@ def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
 def planned_collar(
     holes: Sequence[Hole], corners: tuple[int, int], first: float, growth: float
 ) -> "tuple[CollarPlan, list[CollarLevel]]":
-    """Return the numbers of cells of the rings around a wing's sections, and these rings of cells.
+    """Return numbers of cells for grids around all sections of a wing, and these grids, one per section.
 
     `holes` are the sections of the wing from the root on. `corners` is a result of `planned_corners`. Cells
     at the wing are `first` high and grow by at most `growth`.
@@ -129,7 +129,7 @@ class CollarLevel:
 
     @classmethod
     def of(cls, plan: CollarPlan, hole: Hole) -> "CollarLevel":
-        """Return the ring of cells around the wing's section in `hole`, with numbers of cells from `plan`."""
+        """Return the cells around the section `hole` of a wing; `plan` has the numbers of cells."""
         plane, box = hole.plane, hole.box
         edge, nose, half = plan.edge, plan.nose, (len(plane) - 1) // 2
         outer = outer_loop(plane, box, (edge, nose))
@@ -175,7 +175,7 @@ class CollarLevel:
 
     @cached_property
     def beside(self) -> tuple[float, float]:
-        """Lengths, around the body, of the cells just below and just above the ring of cells at a wing."""
+        """Sizes, measured around the body, of cells next to a wing's grid: just below it, just above it."""
         outer, half = self.ring[:, -1, 1], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
         corners = (half + nose, len(outer) - 1 - edge), (half - nose, edge)
@@ -204,7 +204,7 @@ class CollarLevel:
 
     @property
     def across(self) -> tuple[Floats, Floats]:
-        """Angles around the body, ascending, of the grid's outer nodes ahead of the wing, and behind it."""
+        """Ascending angles around the body of nodes on the front edge and the rear edge of a wing's grid."""
         outer, half, rho = self.ring[:, -1, 1], (len(self.ring) - 1) // 2, float(self.hole.scale[1])
         edge, nose = self.plan.edge, self.plan.nose
         front = outer[half + nose : half - nose - 1 : -1] / rho
@@ -217,13 +217,13 @@ class CollarLevel:
 
     @property
     def long_sides(self) -> tuple[Floats, Floats]:
-        """Coordinates s, along the body, on lower and upper edge of a wing's ring of cells, rear to front."""
+        """Coordinates s along the body of nodes on the lower and upper edge of a wing's grid, rear first."""
         s, half = self.ring[:, -1, 0] / self.hole.scale[0], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
         return s[half + nose : 2 * half - edge + 1][::-1], s[edge : half - nose + 1]
 
     def collar(self) -> Floats:
-        """Return nodes (n, rows + 1, 2): s along and theta around the body; for a fin, on one side only."""
+        """Return nodes (n, rows + 1, 2) around a wing or half a fin, as s along and theta around the body."""
         ring = self.ring / self.hole.scale
         if not self.hole.fin:
             return ring

@@ -65,16 +65,13 @@ class ColumnPlan:
 
     @property
     def beside(self) -> tuple[int, int]:
-        """Total number of cells on the fronts of the blocks around wing and fin, and on their rears."""
+        """Total number of cells along front edges of the grids at wing and fin, and along the rear edges."""
         shares = [1 if self.fin and each is self.collars[-1] else 2 for each in self.collars]
         before = sum(n * each.nose for n, each in zip(shares, self.collars, strict=True))
         return before, sum(n * each.edge for n, each in zip(shares, self.collars, strict=True))
 
     def with_bands(self, cells: int, low: int | None = None) -> ColumnPlan:
-        """Return the plan with `cells` cells in total below and above the collars (cells around wings).
-
-        `low` cells are below; by default the same fraction as before.
-        """
+        """Return the plan with `cells` cells below and above the wing's grid, `low` of them below it."""
         first, *others = self.collars
         if self.fin_alone:
             return replace(self, collars=(replace(first, low=cells, top=cells),))
@@ -84,7 +81,10 @@ class ColumnPlan:
         return replace(self, collars=(replace(first, low=low, top=top), *fins))
 
     def evened(self, widest: float) -> ColumnPlan:
-        """Return a plan that limits cells above and below wings to `widest` times their mean length."""
+        """Return a plan that limits the height of the outermost cells of grids at wings, above and below.
+
+        The limit is `widest` times the mean height of cells from there to the body's top or bottom.
+        """
         return replace(self, collars=tuple(replace(each, widest=widest) for each in self.collars))
 
 
@@ -93,8 +93,8 @@ def planned_column(
 ) -> tuple[ColumnPlan, list[ColumnLevel]]:
     """Return numbers of cells for patches at a wing, a fin or both, and the patches on each surface.
 
-    The surfaces are nested around the body. `holes` has one item for each, the wing first: its sections on
-    all surfaces. Cells next to these sections are `first` high and grow by at most `growth`.
+    The surfaces are nested around the body. `holes` has the sections of the wing in all surfaces, then those
+    of the fin. Cells next to these sections are `first` high and grow by at most `growth`.
     """
     corners = planned_corners([hole for each in holes for hole in each])
     collars, levels = zip(*(planned_collar(each, corners, first, growth) for each in holes), strict=True)
@@ -132,9 +132,9 @@ class ColumnLevel:
         return replace(self, plan=plan, levels=tuple(levels))
 
     def beside_fin(self, fin: ColumnLevel) -> ColumnLevel:
-        """Return the patches (of a wing) with their upper edge adapted to a `fin` beside them.
+        """Return the patches of a wing, with a new zeta (coordinate away from the body) at their upper edge.
 
-        There zeta, the coordinate away from the body, is the mean of the values at the wing and at the fin.
+        It is the mean of the values at this wing and at a `fin` ahead of the wing or behind it.
         """
         zeta = self.zeta
         return replace(self, crown=zeta + 0.5 * (fin.levels[-1].hole.zeta - zeta))
@@ -160,7 +160,7 @@ class ColumnLevel:
         return self.levels[0].low_and_top[0] if self.below is None else self.below
 
     def above(self) -> tuple[float, tuple[float, float]]:
-        """Return the distance between wing and fin cells, and lengths of the first and last cell there."""
+        """Return the gap from a wing's cells up to a fin's, and the heights of first and last cell in it."""
         wing, fin = self.levels
         low, high = self._gap
         rho = 0.5 * float(wing.hole.scale[1] + fin.hole.scale[1])
@@ -185,7 +185,10 @@ class ColumnLevel:
 
     @property
     def sides(self) -> tuple[Side, Side]:
-        """Front and rear edge of the patches: nodes (n, 3) from bottom to top, cell lengths (n,) along s."""
+        """For the front edge of the patches, then the rear edge: nodes (n, 3), and cell lengths in s (n,).
+
+        Nodes are s, theta, zeta (along, around and away from the body), from its bottom to its top.
+        """
         return self._side(0), self._side(1)
 
     def _side(self, which: int) -> Side:

@@ -39,7 +39,7 @@ def section_loft(stack: Stack, unit: Floats) -> Loft:
 
 
 def fin_loft(fin: Fin, unit: Floats) -> Loft:
-    """Return lines along the span of an upright fin, on its side z >= 0; the span is along y.
+    """Return lines along the span of an upright fin (y is up), on its half with z >= 0.
 
     The first line is the leading edge, the last the trailing edge. `unit` (sections, n, 2) are nodes around
     the fin's sections, scaled to chord 1.

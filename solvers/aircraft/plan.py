@@ -51,8 +51,8 @@ class AircraftPlan:
     def of(cls, aircraft: Aircraft, request: AircraftRequest, space: BodyMap, around: int) -> Self:
         """Return the plan of a grid with `around` nodes around each wing.
 
-        By default, cells grow by `GROWTHS[0]`. Raises InputError for a wing that does not begin inside the
-        body, does not leave it, or is too close to another wing or to the top or bottom of the body.
+        Raises InputError for a wing that does not begin inside the body, does not leave it, or is too close
+        to another wing or to the top or bottom of the body.
         """
         chord = aircraft.wing.chord
         first, growth = request.height() * chord, request.growth or GROWTHS[0]

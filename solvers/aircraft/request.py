@@ -12,17 +12,14 @@ _OTHERS = ("layers", "revolve", "axis", "copies")  # options of stacks that do n
 
 @dataclass(frozen=True)
 class AircraftRequest(StackRequest):
-    """Options of `StackRequest` for the grid of an aircraft; give `cells` or `around`, not both."""
+    """Options for the grid of an aircraft; give a number of `cells` or of nodes `around` wings, not both."""
 
     what: ClassVar[str] = "an aircraft"
     fewest_cells: ClassVar[int] = 20_000
 
     @classmethod
     def of(cls, **parameters: Any) -> Self:
-        """Return a request with the parameters as its fields.
-
-        Raises InputError for an invalid option, one that does not apply, or both `cells` and `around`.
-        """
+        """Return a request with these options. Raises InputError if they are invalid or in conflict."""
         refuse_given(cls.what, {name: name in parameters for name in _OTHERS})
         if "cells" in parameters and "around" in parameters:
             raise InputError("{cells} and {around} both say how fine the grid is", "give one of them")

@@ -36,9 +36,9 @@ def arcs_beyond(lengths: Floats, first: Floats, cells: int) -> Floats:
 
 
 def last_cells(points: Floats, section: Indices, even: Floats, first: float, growth: float) -> Floats:
-    """Return spanwise heights (p,) of the cells that end at a surface of nodes through the wing tip.
+    """Return spanwise heights (p,) of the cells inboard of a surface that cuts wings at their tips.
 
-    `points` (p, 3) are the nodes of this surface; those with indices `section` are on the wing. There, cells
+    `points` (p, 3) are the nodes of this surface; those with indices `section` are on a wing. There, cells
     are `first` high. Away from the wing the height increases to sqrt(first * even) within a distance that is
     shorter for a larger growth ratio `growth`. `even` (p,) are mean heights of cells inboard of the nodes.
     """

@@ -41,8 +41,9 @@ def off_body(points: Floats, above: Floats, rings: Sequence[Indices], first: flo
 def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Floats:
     """Return `points` (k, p, 3), moved so that grid lines start from a wing at right angles to its span.
 
-    k points are on each of p spanwise lines. `ring` (n, m) are indices of these lines: n around the wing, m
-    away from it. If `closed`, the last of the n repeats the first. Cells at the wing are `first` high.
+    k points are on each of p spanwise lines. `ring` (n, m) are indices of n x m of these lines: n around the
+    wing, m away from its surface. If `closed`, the last of the n repeats the first. Cells at the wing are
+    `first` high.
     """
     lines = np.moveaxis(points[:, ring], 2, 0)  # (m, k, n, 3), from the wing outwards
     wall, away = lines[0], (lines[1] - lines[0]) / first
@@ -72,7 +73,8 @@ def across_tip(
     """Return nodes on both sides of a wing tip, moved so that cells at the tip are less oblique.
 
     `low` (inboard of the tip) and `high` (outboard) are (k, p, 3): k nodes on each of p spanwise lines.
-    `ring` (n, m) are indices of lines: n around the wing, m outwards. Cells at the wing stay `first` high.
+    `ring` (n, m) are indices of n x m lines: n around the wing, m away from its surface. Cells at the wing
+    stay `first` high.
     """
     level = high[0, ring]
     along, lines = wing.axis, low[-1, ring[:, 0]] - low[-2, ring[:, 0]]
@@ -109,8 +111,8 @@ def _chord(edge: Floats, wing: WingLines) -> float:
 def off_tip(points: Floats, cap: Indices, ring: Indices, wing: WingLines) -> Floats:
     """Return nodes `points` (k, p, 3) of p lines beyond a wing tip, moved so that lines start normal to it.
 
-    `cap` (c,) are indices of lines that start on the tip. `ring` (n, m) are indices of lines beside the tip:
-    n around it, m outwards. Lines far from the tip move less.
+    `cap` (c,) are indices of lines that start on the tip. `ring` (n, m) are indices of lines that start
+    beside it: n around its edge, m at increasing distance from the edge. Lines far from the tip move less.
     """
     apart = arc_lengths(points[0, ring])
     fade = 1.0 - apart / apart[:, -1:]

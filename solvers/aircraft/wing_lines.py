@@ -85,7 +85,7 @@ class WingLines:
         return np.stack([self.loft.line(k, z[:, k]) for k in range(z.shape[1])], axis=1)
 
     def with_first(self, parts: Floats, first: float) -> Floats:
-        """Return fractions `parts` (k, n) on n lines, changed so that the first cells have length `first`."""
+        """Return `parts` (k, n), fractions of the span on n lines, changed: first cells are `first` long."""
         parts = parts.copy()
         for _ in range(_ROUNDS):
             root, second = self.points(parts[:2])

@@ -21,9 +21,10 @@ NEAR, FAR = 4.0, 10.0
 
 
 def openings(z: Any, xp: Any) -> Any:
-    """Return weights (.., 2, 2) of linear interpolation at grid corners: 1 at acute angles, 0 at wide angles.
+    """Return weights (.., 2, 2) at the corners of coarse grids: 1 at acute angles, 0 at wide angles.
 
-    `z` (.., m, n) are the nodes as complex numbers, an array of the module `xp`, which is numpy or torch.
+    There, finer grids are interpolated linearly with this weight, and by splines with the rest. `z`
+    (.., m, n) are the coarse nodes as complex numbers, an array of the module `xp`, numpy or torch.
     """
     west_east = xp.stack([z[..., 0, :], z[..., -1, :]], -2)
     beside = xp.stack([z[..., 1, :], z[..., -2, :]], -2)
