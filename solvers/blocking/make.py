@@ -109,10 +109,7 @@ def _cut_off(fine: Layout) -> str:
 
 
 def _cut_off_of_holes(fine: Layout) -> str:
-    """Return a note on the hole whose area differs most between cells, if by more than `HOLE_CUT_OFF`.
-
-    The area of a domain with a far field does not tell how coarse the cells along a body are.
-    """
+    """Return a note on the hole whose area differs most between cells, if by more than `HOLE_CUT_OFF`."""
     mesh, changes = fine.mesh, dict[str, float]()
     for number, (loop, area) in enumerate(zip(mesh.domain.loops, mesh.domain.curved_areas, strict=True)):
         wall = np.flatnonzero(mesh.places.loop == number)

@@ -36,7 +36,7 @@ class BlockRequest(FirstCell):
     refine : how often all cells are halved. `cells`, `cell_size` and `res` apply to the coarsest grid of the
         family; `first_cell` and `growth` apply to the finest grid, which is the result.
 
-    Raises InputError if a value is out of its range, or parameters exclude each other or lack one they need.
+    Raises InputError if a value is out of range, parameters exclude each other, or a needed one is missing.
     """
 
     cells: int | None = None

@@ -119,7 +119,7 @@ class Cascade:
 
     @property
     def kept(self) -> float:
-        """Greatest thickness of layers, relative to the intended one; below 1 if thicker ones would fold."""
+        """Fraction of the intended thickness that the layers reach; below 1 if thicker ones would fold."""
         return min(float(self.ring.thickness.max()) / self.thickness, 1.0)
 
     @cached_property
@@ -137,7 +137,7 @@ class Cascade:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Arc lengths along loops, by index of the loop; they should increase evenly from node to node."""
+        """Arc lengths along loops, by loop index; nodes are moved so that steps between them grow slowly."""
         return {BLADE: self.ring.along} if self.layers.limit else {}
 
     def factors_at(self, arcs: Floats) -> Floats:

@@ -131,7 +131,10 @@ def _rows(cascade: Cascade, layout: Layout, metric: SizeMetric) -> list[Rows]:
 
 
 def straight_rows(cascade: Cascade) -> list[tuple[int, float, float]]:
-    """Return start (loop index), length and axial direction (±1) of the straight rows to inlet and outlet."""
+    """Return start (loop index), length and axial direction (±1) of straight grid lines to inlet and outlet.
+
+    They lead from the loops `INLET` and `OUTLET`, where the blocks around the blade end.
+    """
     passage = cascade.passage
     axial = passage.axial(passage.front.curve.points)
     before = cascade.ends[0] - float(axial.min() - passage.inlet)
@@ -179,17 +182,17 @@ def counts_of(
 
 def attached_cells(
     cascade: Cascade, chords: Chords, counts: Indices, metric: SizeMetric, layers: int | None = None,
-    longest: Mapping[int, float] | None = None,
+    least: Mapping[int, float] | None = None,
 ) -> int:  # fmt: skip
-    """Return the number of cells in the layers, and in the straight rows that end at inlet and outlet.
+    """Return the number of cells in the layers, and along straight grid lines to inlet and outlet.
 
     `counts` are the cells along the edges of each chord (set of opposite edges). `layers` replaces the number
-    of layers. `longest` has a length for `INLET` and for `OUTLET`; shorter rows there count as that long.
+    of layers. `least` has, for `INLET` and `OUTLET`, the smallest length that these lines are taken to have.
     """
     along = chords.along_loops(counts).tolist()
     total = along[BLADE] * (cascade.rows_of_layers if layers is None else layers)
     for number, length, _ in straight_rows(cascade):
-        length = max(length, (longest or {}).get(number, 0.0))
+        length = max(length, (least or {}).get(number, 0.0))
         if length > 0.0:
             steps = row_steps(abs(cascade.left) / along[number], length, metric.largest)
             total += along[number] * (len(steps) - 1)

@@ -58,8 +58,9 @@ class Passage:
     ) -> Self:  # fmt: skip
         """Return the passage around a closed front (the blade, or the outer edge of its layers).
 
-        Blocks end at the distances `near`, in pitches, upstream and downstream of the front, or at the
-        lengths `inlet` and `outlet` if these are shorter. `centre` is a point inside the front.
+        It reaches from the length `inlet` upstream of the front to `outlet` downstream. The blocks around the
+        front end earlier, at the distances `near` in pitches, if these are shorter than `inlet` and `outlet`;
+        straight grid lines fill the rest. `centre` is a point inside the front.
         """
         points = front.curve.points
         centre = inner_point(points) if centre is None else centre

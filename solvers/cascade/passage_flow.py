@@ -38,8 +38,8 @@ class PassageFlow:
     ----------
     half : half the length of the slit, h.
     around : (n,) increasing angles ν of points on the blade; the potential is G = h cos ν.
-    strip : (n,) images σ of the points under the map of the region between blades to the strip |Im σ| <= π/2.
-        They are infinite at the two points that the potential maps to the ends of the slit.
+    strip : (n,) images σ of the points, if the region between blades is mapped to the strip |Im σ| <= π/2.
+        Two images are infinite: those of the points at the ends of the slit, where G is -h or h.
     away : (n,) ζ - G at the points: their complex coordinates (see `Passage.zeta`) minus the potential.
     """
 
@@ -80,16 +80,16 @@ class PassageFlow:
 
     @cached_property
     def far(self) -> tuple[float, float]:
-        """Real part of ζ - G, complex coordinate minus potential, far upstream and far downstream."""
+        """Real part of ζ - G far upstream and downstream: coordinate ζ (`Passage.zeta`), potential G."""
         before, behind = self.inside(self.half * np.array([-1.0, 1.0], dtype=np.complex128))
         return float(before.real), float(behind.real)
 
     def inside(self, places: Complexes) -> Complexes:
-        """Return complex coordinates minus potentials, ζ - G (m,), of points between the blades.
+        """Return ζ (see `Passage.zeta`) minus the flow's complex potential, at m points between the blades.
 
-        `places` (m,) are their images σ in the strip |Im σ| < π/2. Cauchy's integral of ζ - G along the blade
-        is a trapezoidal sum in the variable tanh(σ/2), divided by the same sum for the constant 1 (Helsing,
-        Ojala, J. Comput. Phys. 227 (2008) 2899-2921).
+        `places` (m,) are images of the points in the strip |Im σ| < π/2. The result follows from the values
+        on the blade by Cauchy's integral, computed as the quotient of two trapezoidal sums in tanh(σ/2)
+        (Helsing, Ojala, J. Comput. Phys. 227 (2008) 2899-2921).
         """
         finite = np.isfinite(self.strip)
         circle = tanh(0.5 * self.strip[finite])

@@ -107,10 +107,7 @@ def filled_outline(outline: Floats, lead: int, first: float, growth: float) -> G
 
 
 def _optimum(mesh: QuadMesh, held: Bools, growth: float) -> QuadMesh:
-    """Return the mesh with all but `held` (n,) nodes at the optimum.
-
-    The weight of growth depends continuously on the growth with the smallest weight.
-    """
+    """Return the mesh with all but `held` (n,) nodes at the optimum."""
     aspects = mesh.aspects(mesh.edge_lengths)
 
     def optimum(start: QuadMesh, weight: float) -> QuadMesh:

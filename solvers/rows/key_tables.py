@@ -97,10 +97,7 @@ def _sections(
 
 
 def _planes(row: Row, first: float, growth: float) -> tuple[list[SectionPlane], Layout | None]:
-    """Return the key sections, and the coarse blocks of the middle one, if known yet.
-
-    The middle one, with the longest straight rows to inlet and outlet, is begun before the others are known.
-    """
+    """Return the key sections, and the coarse blocks of the middle one, if known yet."""
 
     def plane_at(height: float, share: float = 1.0) -> SectionPlane:
         plane = SectionPlane.of(row, height, first, growth, share)

@@ -56,7 +56,7 @@ def _solve_between(rows: Floats) -> None:
 
 
 def between(values: Floats, n: int) -> Floats:
-    """Return `values` (..., m) at m uniform knots, interpolated linearly at n uniform places: (..., n)."""
+    """Return values (..., n) at n uniform places, interpolated linearly from `values` (..., m) at m knots."""
     m = values.shape[-1]
     if n == m:
         return values

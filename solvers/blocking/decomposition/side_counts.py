@@ -66,9 +66,9 @@ def suited(
 
     Counts are at least `least`, multiples of `multiple`, and equal on both sides of periodic pairs. `fixed`
     prescribes the counts of some chords, by index. If `named`, a side for which the domain prescribes n cells
-    gets about n * `multiple` / `finer`. All counts are multiplied by `finer` later; every `multiple`-th grid
-    line then belongs to a coarser grid with n cells along the side. Raises InputError if counts contradict
-    each other or are too small; SolverError if no counts are equal along periodic sides.
+    gets about n * `multiple` / `finer`. The final grid has `finer` times as many cells along each side; n is
+    meant for a grid `multiple` times coarser than the final one. Raises InputError if prescribed counts
+    contradict each other or are too small; SolverError if periodic sides cannot have equal counts.
     """
     sums, alike = sums_of(chords) if named else {}, _alike(chords)
     if not sums and not alike:

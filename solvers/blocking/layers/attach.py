@@ -18,7 +18,7 @@ class Rows:
 
     Parameters
     ----------
-    loop : index of the loop at which the lines begin and, in the new domain, of the loop at which they end.
+    loop : index of the loop at which the lines begin. After `attach`, the loop beyond it has this index.
     nodes : (k, m, 2) x and y of m nodes on each of k lines, in the order in which they begin along the loop.
     arcs : (k,) arc lengths of the last nodes of the lines, on the loop at which they end.
     layers : whether the new cells are layers at a wall, which no later optimisation moves.

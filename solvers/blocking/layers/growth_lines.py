@@ -50,8 +50,8 @@ class GrowthLines:
         """Return all pairs of consecutive edges on grid lines, each with a limit on its length ratio.
 
         Limits are logarithms: `limit` on lines that start at the nodes in the mask `walls` (n,), and where
-        lines cross from block to block; `elsewhere` on other lines. In the blocks beside a wall, limits on
-        lines along it rise to the ratios of the wall's edges, except at nodes in the mask `sliding` (n,).
+        lines cross from block to block; `elsewhere` on other lines. In the blocks beside a wall, ratios along
+        the wall may be as large as at the wall itself, not counting wall nodes in the mask `sliding` (n,).
         """
         mesh, pairs = layout.mesh, cls.of(layout.mesh, elsewhere)
         nodes = pairs.nodes
@@ -83,18 +83,12 @@ class GrowthLines:
         return type(self)(self.nodes[which], self.limit[which], self.offset[which], self.begins[which])
 
     def growth(self, z: Complexes) -> Floats:
-        """Return the logarithms (k,) of the length ratios, second over first edge of a pair, plus `offset`.
-
-        The two edges of a pair follow each other on a grid line. `z` (n,) are the nodes as complex numbers.
-        """
+        """Return log(second length / first length) + `offset` (k,) of pairs of edges, for nodes `z` (n,)."""
         before, after = self.edges(z)
         return np.asarray(log(modulus(after) / modulus(before)) + self.offset)
 
     def edges(self, z: Complexes) -> tuple[Complexes, Complexes]:
-        """Return two arrays (k,), the first and the second edges of all pairs, as complex vectors.
-
-        The two edges of a pair follow each other on a grid line. `z` (n,) are the nodes as complex numbers.
-        """
+        """Return the first and the second edges (k,) of pairs, complex vectors between the nodes `z` (n,)."""
         return z[self.nodes[:, 1]] - z[self.nodes[:, 0]], z[self.nodes[:, 2]] - z[self.begins]
 
     def largest_at(self, mesh: QuadMesh, rows: list[Indices]) -> Floats:

@@ -18,9 +18,9 @@ _WINDOW = 4  # columns to either side over which lengths along fronts are averag
 
 
 def ring_metric(ring: Ring, settings: LayerSettings, factors: Floats | float = 1.0) -> SizeMetric:
-    """Return the target sizes of the cells beyond the front (outer edge) of a ring of layers.
+    """Return the target sizes of the cells just outside the layers around a wall.
 
-    The first cells at the wall have the height of the settings times `factors` (n,).
+    `factors` (n,) multiply the first-cell height from `settings` at the n lines of nodes across the layers.
     """
     points = ring.front.curve.points
     step = np.roll(points, -1, axis=0) - points

@@ -64,8 +64,8 @@ def found_outside(
 def taken_outside(layout: Layout, rest: Domain, fronts: Collection[int]) -> Layout:
     """Return `layout` transferred to the domain `rest`; its loops `fronts` are the outer edges of layers.
 
-    Raises InputError if `layout` has layers around a loop not in `fronts`, or none around a loop in `fronts`
-    that has sharp corners. See `carried_over` for other reasons.
+    Raises InputError if `layout` has layers around a loop that is not in `fronts`, or if a loop in `fronts`
+    has sharp corners but no layers in `layout`. See `carried_over` for other reasons.
     """
     taken = carried_over(layout, rest)
     places = taken.mesh.places

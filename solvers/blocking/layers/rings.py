@@ -78,7 +78,7 @@ class Ring:
 
     @cached_property
     def along(self) -> Measures:
-        """Arc lengths of outer edge, wall and grid line next to it, as functions of position on the first."""
+        """Arc lengths of outer edge, wall and first line above the wall, by position along the outer edge."""
         n = len(self.arcs)
         index = np.arange(FINER * n + 1) / FINER
         knots = np.append(self.front.curve.knots, self.front.length)
@@ -151,10 +151,7 @@ def march_ring(
 
 
 def room_between(rings: Mapping[int, Ring]) -> dict[int, Floats]:
-    """Return, by loop index, the permitted thickness (n,) of layers; inf where no other layers are close.
-
-    Layers can collide although walls do not face each other, because they fan out around sharp edges.
-    """
+    """Return, by loop index, the permitted thickness (n,) of layers; inf where no other layers are close."""
     rooms = {}
     walls = {k: np.arange(_SAMPLES) / _SAMPLES * ring.wall.length for k, ring in rings.items()}
     for k, ring in rings.items():

@@ -97,7 +97,7 @@ class RowSizes:
             check_room(room, float(first), lambda k: place(self.loop, self.arcs[k]))
 
     def metric(self, scale: float, settings: LayerSettings) -> SizeMetric:
-        """Return target sizes of cells beyond the layers; cells at the wall are `scale` * `length` long."""
+        """Return sizes of cells just outside the layers; `scale` multiplies cell lengths along the wall."""
         on, along = self.on, np.maximum(scale * self.length, self.first)
         thick, normals = self.thickness(scale, settings), turned_left(self.loop.tangent(self.arcs))
         across = np.minimum(last_layers(thick, self.rows(scale, settings), settings, self.first), along)

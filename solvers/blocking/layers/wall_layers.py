@@ -141,7 +141,8 @@ class WallLayers:
         """Return the target cell sizes outside the layers.
 
         Next to layers, they are `scale` times the cell lengths along the wall. `scale` is ignored if `size`,
-        the largest cell size, is given. `wakes` has nodes (k, 2) of wakes, by the index of the loop.
+        the largest cell size, is given. `wakes` has the nodes (k, 2) of the wake behind each loop with a
+        sharp edge, by the index of the loop.
         """
         scale = 1.0 if size else scale
         parts = [sizes.metric(scale, self.settings) for sizes in self.sizes.values()]
@@ -160,7 +161,7 @@ class WallLayers:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Arc lengths along loops, by index of the loop; they should increase evenly from node to node."""
+        """Arc lengths along loops, by loop index; nodes are moved so that steps between them grow slowly."""
         measures = {k: ring.along for k, ring in self.rings.items()}
         if self.near is not None:
             ends = np.array([0.0, self.near.circle.length])
@@ -172,7 +173,7 @@ class WallLayers:
         return self.of_ring(number).rows(float(self.rings[number].thickness.max()))
 
     def attached_cells(self, chords: Chords, counts: Indices) -> int:
-        """Return the number of cells in layers around loops and in the far field.
+        """Return the number of cells in layers around loops, plus those from the blocks to a far field.
 
         `counts` (chords,) are the cells along the edges of each chord (set of opposite edges).
         """

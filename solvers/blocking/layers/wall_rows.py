@@ -37,10 +37,11 @@ class WallRows:
     Parameters
     ----------
     loops : for each row, the index of the loop along which it goes.
-    across : (b, 2) for each block, the index of the row that its grid lines from south to north cross, and
-        of the row that those from west to east cross; -1 for none. Refinement does not change these indices.
-    back : (b, 2) whether the block's north side is on the wall (or wake) of the first of these rows, and its
-        east side on that of the second.
+    across : (b, 2) indices of two rows for each block, -1 for none. Grid lines of the block from south to
+        north lead across the first row, those from west to east across the second. Refinement does not
+        change these indices.
+    back : (b, 2) whether the block's north side is on the wall (or wake) of the first row, and its east side
+        on that of the second.
     """
 
     loops: tuple[int, ...]
@@ -48,7 +49,7 @@ class WallRows:
     back: Bools
 
     def of_chords(self, chords: Chords) -> Indices:
-        """Return, by chord (set of opposite edges), the index of the row that these edges cross; -1: none."""
+        """Return, for each chord (set of opposite block edges), the row that its edges cross, -1 for none."""
         row = np.full(chords.count, -1, dtype=np.intp)
         row[chords.chord[chords.sides[:, 2]]] = self.across[:, 0]
         row[chords.chord[chords.sides[:, 0]]] = self.across[:, 1]
@@ -112,9 +113,9 @@ def with_wall_rows(
 ) -> tuple[Layout, WallRows]:
     """Return the layout with rows of quads added along walls, and these rows.
 
-    There is one along each part of a loop in `stretches`. Loops in `sharp` (indices) have a sharp edge; one
-    row goes around each of them and its wake. `mirrors` are mirror lines of the domain. Raises SolverError if
-    the new mesh cannot be divided into blocks.
+    One row goes along each of the `stretches` (parts of loops). One goes around each loop in `sharp`
+    (indices) and around the wake behind its sharp edge. `mirrors` are mirror lines of the domain. Raises
+    SolverError if the new mesh cannot be divided into blocks.
     """
     mesh = layout.mesh
     rungs: list[Edge] = []  # an edge across each row, from wall to front

@@ -41,11 +41,11 @@ class BaseComplex:
 
     @cached_property
     def sides(self) -> tuple[Indices, Indices, Indices]:
-        """Edges along the south, north, west and east side of each of b blocks.
+        """Edges along the south, north, west and east sides of b blocks, as three arrays.
 
-        The first array (k,) lists the edges of one side after another, and -1 after each side. The second
-        (4 b,) has the place in this list at which each side begins. The third (4 b,) has the index of each
-        side's chord; opposite sides of a block are in the same chord.
+        The first (k,) lists the edges of all sides, one side after another, with -1 at the end of each side.
+        The second (4 b,) has the place in this list at which each side begins. The third (4 b,) has the
+        index of each side's chord, a set of sides that are opposite each other in one block after another.
         """
         lines = [line for block in self.blocks for line in (block[:, 0], block[:, -1], block[0], block[-1])]
         nodes = np.concatenate(lines)

@@ -31,8 +31,9 @@ def wall_directions(surface: Triangulation) -> WallDirections:
     """Return the directions that the cross field should have along the walls of a surface.
 
     At a corner where k cells meet, the directions of the two walls are rotated by equal angles, in opposite
-    senses, until there are 90 k degrees between them. The rotation decreases with the distance from the
-    corner. At other vertices the direction is the mean of those of the two edges.
+    senses, until there are 90 k degrees between them. The rotation decreases along the walls with the
+    distance from the corner. It is added to the direction of each wall edge. At a wall vertex that is no
+    corner, it is added to the mean direction of the two wall edges.
     """
     triangle, edge = surface.walls
     start = surface.triangles[triangle, edge]

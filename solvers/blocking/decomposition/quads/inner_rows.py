@@ -29,11 +29,12 @@ def half_edges(mesh: QuadMesh) -> HalfEdges:
 def with_row(mesh: QuadMesh, path: Sequence[int], *, closed: bool = False, of_wall: bool = False) -> QuadMesh:
     """Return the mesh with a row of quads inserted on the left of a path of nodes.
 
-    The path goes from wall to wall or, if `closed`, from its last node back to the first. Its nodes
-    are the right side of the row; copies of them, moved to the left, are the left side. If `of_wall`, the
-    path is along a wall: then the copies stay on the wall as the right side, and the nodes of the path move
-    to the left. The new quads are the last ones of the mesh; each begins with its two nodes on the right
-    side. If a closed path begins at a corner with a single quad, the row has one more quad, in this corner.
+    The path goes from wall to wall or, if `closed`, from its last node back to the first. Each of its nodes
+    gets a copy. The copies are moved to the left, and the row lies between the path and the copies. If the
+    path is along a wall (`of_wall`), the copies stay on the wall, and the nodes of the path are moved. The
+    new quads are the last ones of the mesh; each begins with its two nodes on the right side of the row. If a
+    closed path begins at a corner of a wall with a single quad, another quad fills this corner, between the
+    two ends of the row.
     """
     half, n, count = half_edges(mesh), len(mesh.nodes), len(path)
     new = list(range(n, n + count))

@@ -34,7 +34,7 @@ def loops_to_pad(mesh: QuadMesh) -> list[int]:
 
 
 def spans_to_pad(mesh: QuadMesh, spans: Sequence[Span]) -> list[Span]:
-    """Return the `spans` (parts of loops) with too many or too few quads at a node between their ends."""
+    """Return those `spans` (parts of loops) inside which a node has more or fewer quads than intended."""
     places, wrong = mesh.places, wrong_count(mesh)
     return [
         (loop, begin, end)

@@ -22,14 +22,14 @@ Face = tuple[Side, Side, Side, Side]
 class TMesh:
     """Arcs between the nodes of a motorcycle graph (lines from singular points), and the faces between arcs.
 
-    Half-edge 2 a is arc a in the direction of its line; half-edge 2 a + 1 is the same arc reversed.
+    Each arc is two half-edges. Number 2 k is arc k in the direction of its line, 2 k + 1 the same reversed.
     """
 
     graph: MotorcycleGraph
     nodes: Indices  # (a, 2) nodes at the start and the end of each arc
-    trail: Indices  # (a,) trail of the arc
+    trail: Indices  # (a,) index of the line on which each arc lies
     span: Floats
-    """(a, 2) lengths of that trail at both ends; the last arc of a closed trail ends beyond its length."""
+    """(a, 2) length of that line up to both ends; the last arc of a closed line ends beyond its length."""
     faces: tuple[Face, ...]
     """The half-edges of the four sides of each face, counter-clockwise, the face on their left."""
 

@@ -38,7 +38,10 @@ class Trails:
         return float(self.length[self.first[trail + 1] + trail])
 
     def at_vertex(self, vertex: int) -> tuple[int, float]:
-        """Return the boundary line (index) through a vertex, and its length up to there in the u-v plane."""
+        """Return the index of the boundary line through a vertex, and the line's length up to the vertex.
+
+        Lengths are measured in the plane u, v to which the triangulation is mapped.
+        """
         return self._on_piece(self.vertex == vertex, 0.0)
 
     def at_edge(self, face: int, edge: int, part: float) -> tuple[int, float]:
@@ -56,7 +59,11 @@ class Trails:
         return trail, float(start + part * (stop - start))
 
     def locate(self, trail: Indices, length: Floats) -> tuple[Indices, Floats]:
-        """Return the pieces (q,), and places in them (0 to 1), at `length` (q,) along lines `trail` (q,)."""
+        """Return, for points on lines, the index of the piece of line (q,), and the place on it from 0 to 1.
+
+        Each piece is straight, in one triangle. `trail` (q,) are the indices of the points' lines, `length`
+        (q,) the lengths of these lines up to the points.
+        """
         ends = self.length[self.first[1:] + np.arange(len(self.first) - 1)]
         offset = np.append(0.0, np.cumsum(ends))
         owner = np.repeat(np.arange(len(ends)), np.diff(self.first))
@@ -69,7 +76,7 @@ class Trails:
         return piece, np.clip(part, 0.0, 1.0)
 
     def joined(self, others: "Trails") -> "Trails":
-        """Return these trails (lines in the map), followed by those of `others`."""
+        """Return these lines and, after them, the lines of `others`."""
         names = [each.name for each in fields(self)]
         mine, theirs = ([getattr(trails, name) for name in names] for trails in (self, others))
         theirs[0] = theirs[0][1:] + self.first[-1]
@@ -77,7 +84,11 @@ class Trails:
 
 
 def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, count: int) -> Trails:
-    """Return `count` lines of constant u or v of a map, from the straight pieces given by `trace_rays`."""
+    """Return `count` lines of constant u or v of a map, joined from p pieces, each straight in a triangle.
+
+    `pieces` (p, 3) has the index of the line and of the triangle of each piece. `lines` (p, 5) has u and v of
+    the start of the piece, u and v of its end, and the length of the line before it.
+    """
     order = np.argsort(pieces[:, 0], kind="stable")
     pieces, lines = pieces[order], lines[order]
     many = np.bincount(pieces[:, 0], minlength=count)

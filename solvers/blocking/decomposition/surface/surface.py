@@ -120,10 +120,7 @@ class Triangulation:
 
 
 def split_edges_between_walls(triangulation: Triangulation) -> Triangulation:
-    """Return the triangulation with a new vertex on every interior edge that joins two wall vertices.
-
-    Otherwise a triangle with two edges on one wall would have no area in the map to coordinates u, v.
-    """
+    """Return the triangulation with a new vertex on every interior edge that joins two wall vertices."""
     boundary = len(triangulation.arc)
     while True:
         triangles, neighbours = triangulation.triangles, triangulation.neighbours

@@ -27,9 +27,9 @@ Ray = tuple[Mirror, Floats]  # a mirror, and the direction (2,) of the ray on it
 
 @dataclass(frozen=True, eq=False)
 class LoopPart:
-    """A piece of the outline of a sector between mirrors: part of a boundary loop, or the sector's tip."""
+    """A piece of the outline of one part of a symmetric domain: along a loop, or where mirror lines meet."""
 
-    loop: int  # index of the loop; -1 for the tip, the point where the mirror lines meet
+    loop: int  # index of the boundary loop; -1 for the point where mirror lines meet
     arcs: Floats  # (n,) ascending arc lengths
     points: Floats  # (n, 2) points at these arc lengths
     corners: Indices  # indices of the points that are corners, including those on mirror lines
@@ -49,8 +49,7 @@ class DomainPart:
     stretches : parts of loops of the whole domain that bound the part.
     holes : indices of the loops of the whole domain inside the part.
     rays : the mirrors that bound the part.
-    copies : for each copy of the part, the mirrors in which it is reflected, in order. The first entry is
-        empty: it is the part itself.
+    copies : for each copy, the mirrors in which it is reflected, in order; none for the part itself.
     """
 
     whole: Domain
@@ -64,7 +63,8 @@ class DomainPart:
 def spans_between(loop: Loop) -> list[Span]:
     """Return the parts of the outer loop that begin and end at corners with a single cell.
 
-    All corners in between have two cells. Each part is the loop's index 0, and the arc lengths of its ends.
+    All corners in between have two cells. A part is (0, begin, end): the index 0 of the outer loop, and
+    the arc lengths at which the part begins and ends.
     """
     corners = zip(loop.corner_arcs.tolist(), loop.corner_cells.tolist(), strict=True)
     turns = [(arc, cells) for arc, cells in corners if cells != 2]
