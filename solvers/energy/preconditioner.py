@@ -41,7 +41,7 @@ class Descent:
         """Minimise; return the functional, the smallest corner Jacobian and the number of iterations.
 
         The iteration ends if nodes move by less than `still` cell sizes, or after `most` iterations. The area
-        `epsilon` regularises Jacobians. `relief` (ni,), from `relief_of`, reduces terms at the wall.
+        `epsilon` regularises Jacobians. `relief` (ni,), from `relief_of`, reduces the functional at walls.
         `listener` gets iteration number, value and gradient norm, before the first and after each iteration.
         """
         return self.minimiser.run(self._z, *self._terms, epsilon, relief, still, REACH_CELLS, most, listener)

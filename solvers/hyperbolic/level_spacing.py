@@ -44,7 +44,7 @@ def fastest(nodes: Floats) -> Floats:
 
 
 def even_shares(nodes: Floats, steps: Floats, rate: float, constant: int) -> Floats:
-    """Return growth of march steps for which the largest growth ratio among cells is equal on all levels.
+    """Return the growth of march steps for which the largest growth ratio among cells is equal on all levels.
 
     The result is `shares` (n,) of `level_steps`: log(step k / step (k - 1)) is proportional to ``shares[k]``.
 

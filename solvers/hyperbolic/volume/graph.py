@@ -77,7 +77,7 @@ def march_graph(
     planes : p planes of symmetry.
     in_plane : (p, k) for each plane and each of the k open edges of the surface, whether the edge is in it.
     hollow : (n,) distances from concave edges (`meshonet.geometry.surface.hollows`).
-    splay : nodes on free edges have ghosts 1 + `splay` times as far away as their neighbours inside.
+    splay : nodes on free edges have ghost nodes 1 + `splay` times as far away as their neighbours inside.
     boost : additional smoothing at irregular nodes.
     """
     n = len(surface.nodes)
