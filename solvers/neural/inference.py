@@ -38,9 +38,9 @@ def infer_many(
     `model` is the name of a shipped model, the path of a ``.safetensors`` file, or ``base`` for the conformal
     solver; None is the default of the topology. `polish`: see `operator.Operator.solve`. If a `device` is
     given, torch computes the grids on it, and ``auto`` polish is 3 Picard steps for models of airfoils and
-    off for others. With `fallback`, a grid whose expected error is too large (see `confidence`) is replaced
-    by one of the method that the network imitates. Raises InputError if there is no such model or device, or
-    if a boundary does not suit the model.
+    off for others. With `fallback`, the method that the network imitates makes a grid anew if it has folded
+    cells or too large an expected error (see `confidence`). Raises InputError if there is no such model or
+    device, or if a boundary does not suit the model.
     """
     named = None if model is None else load(model)
     solutions: dict[int, Solution] = {}

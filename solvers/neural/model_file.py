@@ -18,11 +18,11 @@ OURS = "use a file made by meshonet train"  # remedy for a file that is no model
 
 
 class Kind(NamedTuple):
-    """A kind of model file: its header has `text` in the entry ``kind``, and `version` in the entry `key`."""
+    """A kind of model file, recognised by two entries of its header."""
 
-    text: str
-    key: str
-    version: int
+    text: str  # value of the entry ``kind``
+    key: str  # name of the other entry
+    version: int  # value of the other entry
 
 
 # the version changes with the meaning of the arrays
@@ -30,8 +30,7 @@ STRIP = Kind("meshonet strip operator", "encoding", 1)
 QUAD = Kind("meshonet quad operator", "encoding", 2)
 PAPER = Kind("meshonet operator", "version", 1)
 VOLUME = Kind("meshonet volume network", "version", 1)
-KINDS = {kind.text: kind for kind in (STRIP, QUAD, PAPER, VOLUME)}
-"""Kinds by their `text`; files of another version are refused."""
+KINDS = {kind.text: kind for kind in (STRIP, QUAD, PAPER, VOLUME)}  # by their text
 
 
 def read_model(path: Path) -> tuple[Kind, dict[str, Any], dict[str, NDArray[Any]]]:
@@ -49,7 +48,7 @@ def read_model(path: Path) -> tuple[Kind, dict[str, Any], dict[str, NDArray[Any]
 
 
 def read_tensors(path: Path) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
-    """Return header and arrays of a safetensors file. Raises InputError if it is none or has NaN or inf."""
+    """Return header and arrays of a safetensors file. Raises InputError for other files, NaN or inf."""
     from safetensors import SafetensorError, safe_open
 
     source = str(path)

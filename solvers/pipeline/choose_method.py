@@ -21,7 +21,7 @@ NETWORK_SETTINGS = ("model", "polish", "device", "fallback")
 
 
 def method_of(request: OneBlock) -> Method:
-    """Return the method that makes the grids of `request`; it does not repair folded cells.
+    """Return the method that makes the grids of `request`, without the repair of folded cells.
 
     Raises InputError if the request has settings that the method does not have.
     """

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def heights_of(request: OneBlock, boundary: Boundary) -> Heights:
     """Return the first-cell heights that a request prescribes, in the unit of `boundary`.
 
-    Raises InputError if no side of a four-sided domain may be a wall, unless the request names walls.
+    Raises InputError if the request names no walls, and names such as ``inlet`` exclude all sides.
     """
     off: dict[str, Any] = {}
     if request.at_walls and boundary.around_body:

@@ -47,7 +47,7 @@ class Each(OneByOne):
         return setting in inspect.signature(self.function).parameters
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the solution of a boundary; `start` is ignored if `target` has no parameter ``initial``."""
+        """Return the solution of a boundary by `function`; many functions ignore the initial grid `start`."""
         more = {"initial": start} if start is not None and self.takes("initial") else {}
         return self.function(boundary, **self.settings, **more)
 

@@ -168,8 +168,8 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
     settings : dict, optional
         Settings of the method by name.
     first_cell : float or mapping, optional
-        Height of the first cells at the walls in `walls`. The unit is the chord around a body, else the unit
-        of the domain. In four-sided and multi-block domains, a mapping from names to heights selects walls.
+        Height of first cells at the walls in `walls`, in chords for grids around bodies, else in the domain's
+        unit. In four-sided and multi-block domains, a mapping from names to heights selects walls.
     y_plus : float or mapping, optional
         First-cell height as y+ of a turbulent flat plate, instead of `first_cell`.
     reynolds : float, optional

@@ -102,9 +102,9 @@ def keeps_base(shape: Shape, request: GridRequest) -> TypeGuard[Airfoil]:
     """Return whether a request marches a C grid that keeps the blunt base (trailing edge) of an airfoil.
 
     `te` ``exact`` keeps every base. ``auto`` without a first-cell height keeps bases higher than `THIN_BASE`
-    chords, unless an option such as `refine` excludes such grids. ``auto`` with a first-cell height keeps
-    bases that are higher than `THIN_BASE` chords and at least as high as one first cell, thinner bases if
-    they are at least as high as `RESOLVED` first cells, and every base if `base_nodes` is given.
+    chords, unless an option such as `coarse` excludes such grids. ``auto`` with a first-cell height keeps a
+    base higher than `THIN_BASE` chords if it has the height of at least one first cell, and any other base if
+    it has that of `RESOLVED` first cells. If `base_nodes` is given too, every base is kept.
     """
     sampling = request.sampling
     if request.method not in MARCHING or sampling.te not in ("auto", "exact"):

@@ -54,10 +54,9 @@ class Converged(BatchFunction):
 
     @staticmethod
     def backward(ctx: Any, gradient: Tensor, _: Tensor) -> tuple[None, Tensor]:
-        """Return None for the equations, and a functional's derivatives with respect to boundary nodes.
+        """Return None for the equations, and a function's derivatives with respect to boundary nodes.
 
-        `gradient` has those with respect to all nodes of the solution. The result has the same
-        shape (batch, 2, ni, nj), and is 0 at inner nodes.
+        `gradient` (batch, 2, ni, nj) has derivatives by all nodes. The result is 0 at inner nodes.
         """
         return None, Adjoint.apply(ctx.equations, *ctx.saved_tensors, gradient)  # type: ignore[no-untyped-call]
 

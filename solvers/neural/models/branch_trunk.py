@@ -19,8 +19,9 @@ from meshonet.solvers.neural.samples import Samples
 class MeshONet(Architecture):
     """The neural operator of the MeshONet paper with the authors' settings; 54,482 parameters.
 
-    ``x = branch_x(s_x) . trunk(lift(xi, eta)) + b``, where s_x has the x coordinates of boundary points. y
-    has its own branch and the same trunk. The trunk ends with tanh. Xiao et al., arXiv 2501.11937.
+    ``x = branch_x(s_x) . trunk(lift(xi, eta)) + b``: s_x are the x coordinates of boundary points, and lift
+    returns sines, cosines and powers of xi and eta. y has its own branch and the same trunk. The trunk ends
+    with tanh. Xiao et al., arXiv 2501.11937.
     """
 
     interior: ClassVar[float] = 900.0
@@ -110,10 +111,7 @@ class PODDeepONet(Architecture):
         return dense_shapes("branch", (2 * self.sensors, *self.hidden, self.features))
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
-        """Return the mean of `targets` (nodes, 2) and their POD modes (nodes, features, 2), by name.
-
-        If there are too few modes, modes that are 0 are added.
-        """
+        """Return the mean of `targets` (nodes, 2) and their POD modes (nodes, features, 2), by name."""
         n = len(targets)
         rows = targets.reshape(n, -1)
         mean = rows.mean(axis=0)

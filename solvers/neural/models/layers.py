@@ -45,10 +45,10 @@ def products(trunk: Any, branches: Any) -> Any:
 
 
 def initial(shapes: Shapes, rng: np.random.Generator) -> Arrays:
-    """Return random initial parameters of the given shapes; the end of a name determines the distribution.
+    """Return random initial parameters by name; `shapes` has the shape for each name.
 
-    Biases are 0. Weights are uniform after Glorot & Bengio, Understanding the difficulty of training deep
-    feedforward neural networks (2010). Spectral weights are normal with standard deviation 1/inputs.
+    Names that end with ``bias`` get 0, with ``spectral`` normal numbers of standard deviation 1/inputs, with
+    ``poles`` uniform numbers. Others get uniform numbers after Glorot & Bengio, AISTATS 2010.
     """
     arrays: Arrays = {}
     for name, shape in shapes.items():

@@ -98,7 +98,10 @@ def nearer(z: Any, unit: Any, xp: Any, around: bool = False) -> Any:
 
 
 def in_frame(z: Any, xp: Any) -> tuple[Any, Any]:
-    """Return centred grids `z`, turned and scaled to area 1, and factors (batch, 1, 1) that undo both."""
+    """Return grids ``(z - centre) * factor`` of area 1, and the complex numbers 1 / factor (batch, 1, 1).
+
+    `z` (batch, n, n) has nodes x + i y. The factor also turns a grid so that xi is along x on average.
+    """
     middle, factor = (value[:, None, None] for value in frame(z, xp))
     return times(z - middle, factor), factor.conj() / (factor.real**2 + factor.imag**2)
 

@@ -69,10 +69,10 @@ SEEN: Floats = np.stack([_seen(element) for element in ELEMENTS])  # (8, FEATURE
 
 
 def table(size: int) -> Integers:
-    """Return the index (8, 8, size²) of the parameter at each place of an equivariant convolution kernel.
+    """Return which parameters the entries of an equivariant convolution kernel take: (8, 8, size²) indices.
 
-    The kernel has an output channel h and an input channel g for each of the 8 symmetries of a square. At
-    position p it is K[h, g](p) = w[h⁻¹ g](h⁻¹ p). Indices are those of the flat parameters w (8, size, size).
+    Output channels h and input channels g belong to the 8 symmetries of a square. For these and position p,
+    the entry is w[h⁻¹ g](h⁻¹ p). Indices are those of the parameters w (8, size, size) as a flat array.
     """
     count = size * size
     return np.asarray(RELATIVE[:, :, None] * count + TAPS[size].reshape(ORDER, 1, count))
@@ -81,9 +81,9 @@ def table(size: int) -> Integers:
 def convolution(weight: Any, places: Any, xp: Any) -> Any:
     """Return the kernel (8 * out, 8 * in, size, size) of a convolution that commutes with turns and mirrors.
 
-    Channels are in sets of 8, one for each symmetry of a square. `weight` (out, in, 8, size, size) has the
-    parameters for each pair of an output set and an input set. For such a pair, `places` (8, 8,
-    size²), from `table`, has the flat index of the parameter that each entry of the kernel takes.
+    Channels are in sets of 8, one for each symmetry of a square. `weight` (out, in, 8, size, size) has 8 *
+    size² parameters for each pair of an output set and an input set. `places` (8, 8, size²), from `table`,
+    tells which of them is taken for a channel of the output set, a channel of the input set, and a position.
     """
     out, into, _, size, _ = weight.shape
     spread = weight.reshape(out, into, -1)[:, :, places]
@@ -99,9 +99,10 @@ def lift(weight: Any, seen: Any) -> Any:
 
 
 def projection(weight: Any, elements: Any, xp: Any) -> Any:
-    """Return the last layer (2 * heads, 8 * in): each matrix of `elements` times the vectors `weight` / 8.
+    """Return the matrix (2 * heads, 8 * sets) of the last layer; a head is x and y for one kind of grid.
 
-    `elements` (8, 2, 2) are symmetries of a square. ``weight[head, :, k]`` is for set k of 8 input channels.
+    Channels are in sets of 8, one for each symmetry of a square, with its matrix in `elements` (8, 2, 2).
+    Channel g of set k is multiplied by the vector ``elements[g] @ weight[head, :, k] / 8`` for each head.
     """
     back = weight[:, None, :, :, None] * xp.moveaxis(elements, 0, -1)[:, :, None]
     return back.sum(2).reshape(2 * len(weight), -1) / ORDER

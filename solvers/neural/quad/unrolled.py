@@ -44,8 +44,8 @@ def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any 
 
     `walls` (batch, m + 1, n) are n closed lines around a body, of m + 1 complex nodes whose last repeats the
     first. The centre is the centroid of the body's outline `wall` (batch, ni) if all lines wind exactly once
-    around it, else the result of `inside` for the nodes of the first line. The mask is false if a line does
-    not wind once around this point either; the mapped lines are then useless.
+    around it, else the result of `inside` for the nodes of the first line. The mask is false, and the mapped
+    lines are useless, if a line does not wind exactly once around the centre.
     """
     centres = middles(wall[:, :-1], xp)
     strips, once = unrolled(walls, centres, xp)
@@ -63,7 +63,7 @@ def even(strips: Any, n: int, xp: Any = np) -> Any:
 
 
 def factors(strips: Any, xp: Any = np) -> Any:
-    """Return factors (batch,) that scale strips of width 2 pi, complex nodes (batch, m + 1, n), to area 2."""
+    """Return scale factors (batch,) to area 2 for complex grids (batch, m + 1, n) that are 2 pi wide in x."""
     heights = (strips[:, :-1, -1] - strips[:, :-1, 0]).imag.mean(1)
     return 1.0 / xp.sqrt(0.5 * TURN * heights)
 

@@ -22,7 +22,7 @@ ACCEPTED = 1e-4  # a slower one is still kept below this: the rest is in the hig
 
 @dataclass(frozen=True)
 class Strips:
-    """Fourier modes of the walls and of Winslow's grid, for n regions around a body mapped to strips."""
+    """Training shapes as Fourier modes: n regions, each around a body, that are mapped to periodic strips."""
 
     wall: Complexes  # (n, 2 MODES + 1) modes of the position F on the wall
     far: Complexes  # (n, 2 MODES + 1) the same on the far field
@@ -79,9 +79,10 @@ class StripTargets:
     """Training data: inputs, as `encode` returns them, and wanted outputs (n, 2 Q, COLUMNS).
 
     Regions around bodies are mapped to periodic strips. R is Winslow's solution in a strip, minus the
-    harmonic function that is equal to it on the strip's sides. At COLUMNS points along the strip, R is
-    approximately a sum of Q functions across it, `basis` (Q, LEVELS - 2), times factors. The wanted outputs
-    are the real, then the imaginary parts of factors / (scale * size**2), with `size` from `encode`.
+    harmonic function that is equal to it on the strip's sides. At each of COLUMNS points along the strip, R
+    is approximately a sum of Q functions across the strip, each with its own complex factor. `basis` (Q,
+    LEVELS - 2) has the functions. The wanted outputs are the real, then the imaginary parts of the factors
+    divided by ``scale * size**2``, with `size` from `encode`.
     """
 
     channels: Floats

@@ -19,8 +19,8 @@ SLOPE = 0.3  # factor of slopes, which are larger than values by about their wav
 def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
     """Return the network's inputs for strips whose walls have the Fourier modes `wall` and `far`.
 
-    A strip is the image of the region around a body, and periodic in theta. `wall` (body) and `far` (far
-    field) have the shape (batch, 2 MODES + 1). The inputs are three arrays:
+    A strip is the conformal image of the region around a body, with period 2 pi along theta. `wall` (body)
+    and `far` (far field) have the shape (batch, 2 MODES + 1). The inputs are three arrays:
 
     - channels (batch, CHANNELS, COLUMNS): the harmonic extension of the walls at the fractions `DEPTHS` of
       the height, and its derivative along theta, both divided by `size`;
@@ -42,10 +42,11 @@ def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
 def decode(coefficients: Any, basis: Any, scale: float, size: Any, xp: Any = np) -> Any:
     """Return Fourier modes (batch, 2 MODES + 1, LEVELS) of Winslow's solution minus the harmonic extension.
 
-    Both are functions on the periodic strip to which the region around a body is mapped. The difference is a
-    sum of Q functions across the strip, `basis` (Q, LEVELS - 2), at its inner Chebyshev points. Their factors
-    are ``scale * size**2`` times the network's outputs, `coefficients` (batch, 2 Q, COLUMNS) at equal steps
-    along the strip: Q real parts, then Q imaginary parts. `scale` is of `StripTargets`, `size` of `encode`.
+    Both are functions on the periodic strip to which the region around a body is mapped. At each point along
+    the strip, the difference is a sum of Q functions across the strip, each with its own complex factor.
+    `basis` (Q, LEVELS - 2) has the functions' values at inner Chebyshev points. `coefficients` (batch, 2 Q,
+    COLUMNS) are the network's outputs at equal steps along the strip: Q real parts, then Q imaginary parts.
+    Factors are these times ``scale * size**2``, with `scale` from `StripTargets` and `size` from `encode`.
     """
     q = len(basis)
     c = from_columns(coefficients[:, :q] + 1j * coefficients[:, q:], xp)

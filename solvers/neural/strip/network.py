@@ -13,7 +13,7 @@ GATE = 0.3  # factor of b tanh(a)
 
 
 class StripNetwork:
-    """A Fourier neural operator along theta, the periodic coordinate of strips, with given `weights`.
+    """A Fourier neural operator on functions of theta, the periodic coordinate around a body.
 
     W, E and P are linear maps at each point along theta. conv5 is a convolution over 5 points. K and K'
     multiply each low Fourier mode by a matrix. a and b are halves of the channels::
@@ -22,8 +22,7 @@ class StripNetwork:
         h <- h + E gelu(a + K h) + 0.3 b tanh(a)              three times, [a, b] = conv5(h)
         out = P h + K' h
 
-    `weights` has arrays of `xp`, numpy or torch, by name (see `shapes`). Li et al., Fourier Neural Operator
-    for Parametric Partial Differential Equations (2020).
+    `weights` has arrays of `xp`, numpy or torch, by name (see `shapes`). Li et al., arXiv 2010.08895.
     """
 
     def __init__(self, weights: Mapping[str, Any], xp: Any = np) -> None:
