@@ -126,7 +126,7 @@ class Inputs:
         return len(list(islice(self, _BEGINNING)))
 
     def count(self) -> int | None:
-        """Return the number of all inputs over the number of shards, rounded up; None with standard input.
+        """Return the number of all inputs, divided by n of `shard` and rounded up; None with standard input.
 
         Each sample of a dataset counts as an input.
         """

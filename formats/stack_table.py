@@ -56,7 +56,8 @@ def _nodes(row: Table) -> int | None:
 def cant(data: Table, default: Cant) -> Cant:
     """Return the angle in degrees by which a section is turned about x, or the word ``panel``.
 
-    This word means the mean of the wing's dihedral angles on both sides of the section.
+    This word means the mean of the wing's dihedral angles on both sides of the section. Without an entry
+    ``cant`` in `data`, `default` is returned.
     """
     if "cant" not in data.data or data.data["cant"] == "panel":
         return "panel" if "cant" in data.data else default

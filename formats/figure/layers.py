@@ -202,9 +202,9 @@ def _blocks(sizes: Floats) -> NDArray[np.intp]:
 
 
 def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
-    """Return distances (n,) between lines of constant i at n visible cells, and the areas (n,) of the cells.
+    """Return two pairs (distances between grid lines, cell areas), all (n,), at n visible cells of `part`.
 
-    The second pair has the distances between lines of constant j, and the same areas.
+    The first pair is for lines of constant i, the second for lines of constant j. The areas are the same.
     """
     i, j = np.nonzero(part.mask)
     stride = max(1, len(i) // _SAMPLE)

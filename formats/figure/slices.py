@@ -83,7 +83,10 @@ def layers(grid: Grid, at: Slice, values: list[Floats] | None) -> list[CellSheet
 
 @dataclass(frozen=True, eq=False)
 class Cut:
-    """Section through n cells: a polygon (12, 2) of each, whose last corner is repeated; cell values (n,)."""
+    """Section through n cells: a polygon in each, and the cell values (n,).
+
+    `polygons` is (n, 12, 2). A polygon with fewer than 12 corners repeats its last corner.
+    """
 
     polygons: Floats
     values: Floats | None

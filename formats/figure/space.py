@@ -33,8 +33,8 @@ _FLAT = 1e-9  # largest extent of a plane grid surface along its normal, relativ
 def draw_in_space(grid: Grid, colouring: Colouring | None, view: View) -> Figure:
     """Return a figure of a volume or a surface; `colouring` has the cell values to show.
 
-    Raises InputError: a slice that the grid lacks; a zoom box with no cells in it, or one of six coordinates
-    for a picture that needs four.
+    Raises InputError: a slice that the grid lacks; a zoom box that contains no cells; a zoom box of four
+    coordinates for a picture that needs six, or the reverse.
     """
     values = [np.asarray(part) for part in colouring.parts] if colouring else None
     where = view.part

@@ -23,9 +23,10 @@ def cells_of(number: Indices) -> Indices:
 
 
 def cell_numbers(counts: Sequence[tuple[int, ...]]) -> list[Indices]:
-    """Return, for each block, an array (ni-1, nj-1[, nk-1]) of cell numbers; `counts` are its node counts.
+    """Return, for each block, an array (ni-1, nj-1[, nk-1]) of cell numbers.
 
-    Numbers begin at 0 and continue from block to block; i varies fastest.
+    Numbers begin at 0 and continue from block to block; i varies fastest. `counts` has the numbers of nodes
+    (ni, nj[, nk]) of each block.
     """
     shapes = [tuple(n - 1 for n in count) for count in counts]
     ends = np.cumsum([0, *(int(np.prod(shape)) for shape in shapes)])
@@ -36,7 +37,7 @@ def cell_numbers(counts: Sequence[tuple[int, ...]]) -> list[Indices]:
 
 
 def faces_of(side_numbers: Indices, side: Side) -> Indices:
-    """Return the nodes of each cell edge (k, 2) or cell face (k, 4) on a part of a block's side.
+    """Return the node numbers of the k cell edges (k, 2) or cell faces (k, 4) on a part of a block's side.
 
     `side_numbers` (n,) or (n, m) are the numbers of the nodes in this part; `side` is the name of the side.
     Edges have the domain on their left. The normals of faces point out of the domain.

@@ -18,9 +18,9 @@ Indices = NDArray[np.int64]
 
 
 def collapsed_edges(grid: Grid) -> Iterator[tuple[int, Side, int, Bools]]:
-    """Yield the places of edges of zero length: number of the block, side, direction of the edges, and mask.
+    """Yield where sides of volumes have edges of zero length: block number, side, direction and mask.
 
-    The direction is 0 or 1 of the side. The mask has an entry for each edge of the side in this direction.
+    The edges run along direction 0 or 1 of the side. The mask covers all edges of the side that do so.
     """
     for number, block in enumerate(grid.blocks):
         for side in sides_of(block.counts) if len(block.counts) == 3 else ():

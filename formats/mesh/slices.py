@@ -37,7 +37,7 @@ class IndexedNodes:
     """Nodes (ni, nj, 2 or 3) or (ni, nj, nk, 3) of a block, and how its directions relate to the file's.
 
     Direction d of `nodes` (0 is i) is direction ``axes[d]`` (0 to 2) of the file's arrays. If `reversed`, i
-    of `nodes` runs against it.
+    of `nodes` runs against its direction in the file.
     """
 
     nodes: Floats

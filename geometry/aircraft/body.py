@@ -121,7 +121,8 @@ class Body:
     def points(self, s: Floats, theta: Floats) -> Floats:
         """Return points (..., 3) of the surface.
 
-        `s` (...) are arc lengths of the meridian from the nose, `theta` (...) angles in radians from -y.
+        `s` (...) are arc lengths of the meridian from the nose. `theta` (...) are angles about the axis in
+        radians, 0 at the keel (-y).
         """
         s, theta = np.broadcast_arrays(s, theta)
         x, r = np.moveaxis(self._spline(s.ravel()).reshape(*s.shape, 2), -1, 0)

@@ -145,9 +145,10 @@ class LoftedBody(Body):
         return radius * flatness, radius * (2.0 - flatness), self._middle(x)
 
     def shape(self, s: Floats, theta: Floats) -> Floats:
-        """Return radii (n,) of sections, over those of an ellipse with the width and height of the section.
+        """Return radii (n,) of sections, divided by those of ellipses of the same width and height.
 
-        `s` (n,) are arc lengths of the meridian from the nose, `theta` (n,) angles in radians from the keel.
+        `s` (n,) are arc lengths of the meridian from the nose. `theta` (n,) are angles in radians, 0 at the
+        keel (-y); see the class.
         """
         arcs = self.arcs
         before = np.clip(np.searchsorted(arcs, s, side="right") - 1, 0, len(arcs) - 2)
@@ -161,7 +162,11 @@ class LoftedBody(Body):
         return hermite_piece((s - arcs[before]) / h, start, stop, h * begin, h * end)
 
     def points(self, s: Floats, theta: Floats) -> Floats:
-        """Return points (..., 3) of the surface, at `s` (...) and `theta` (...) as in `shape`."""
+        """Return points (..., 3) of the surface.
+
+        `s` (...) are arc lengths of the meridian from the nose. `theta` (...) are angles in radians, 0 at the
+        keel (-y); see the class.
+        """
         s, theta = np.broadcast_arrays(s, theta)
         arcs, angles = s.ravel(), theta.ravel()
         across, up, middle = self.sizes(arcs)

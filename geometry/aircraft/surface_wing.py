@@ -96,7 +96,7 @@ class SurfaceWing:
 
     @cached_property
     def arcs(self) -> Floats:
-        """Arc lengths (n,), in chords, of the n strips from root to tip into which the surface is divided.
+        """Arc lengths (n,), in chords, across the n strips of the surface, which run from root to tip.
 
         They are measured around the section half way along the span.
         """
@@ -143,7 +143,10 @@ class SurfaceWing:
         return float(np.interp(place, np.arange(len(self.strips) + 1), self._bounds))
 
     def places(self, arcs: Floats) -> Floats:
-        """Return places (n,) (see `line`) from arc lengths (n,), in chords, from the upper trailing edge."""
+        """Return the places (n,) around the section at arc lengths `arcs` (n,) from the upper trailing edge.
+
+        Arc lengths are in chords. Place 1.25 is a quarter of the way across the second strip of the surface.
+        """
         return np.interp(arcs, self._bounds, np.arange(len(self.strips) + 1))
 
     @property

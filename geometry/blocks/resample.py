@@ -91,7 +91,7 @@ def resample_patches(
 ) -> tuple[Patch, ...]:
     """Return `patches` with new index ranges, after node counts (xi, eta) change from `had` to `has`.
 
-    `wake` is the number of cells along the wake of a C boundary before the change, else 0.
+    `wake` is the number of cells from end to end of the wake of a C boundary before the change, else 0.
     """
     along_xi, along_eta = _marks(had[0], has[0], wake), _marks(had[1], has[1], 0)
 

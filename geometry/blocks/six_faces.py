@@ -88,7 +88,7 @@ class SixFaces:
     def steps_at_edge(self, side: Side, second: Side) -> Floats:
         """Return the vectors (n, 3) across that row of cells of face `side` that touches face `second`.
 
-        There is a vector for each node of their common edge. It points towards the larger index.
+        There is a vector for each node of their common edge. It points to the side of larger indices.
         """
         axis, end = PLACES[second]
         rows = np.moveaxis(getattr(self, side), axis - (axis > PLACES[side][0]), 0)

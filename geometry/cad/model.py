@@ -47,7 +47,7 @@ class CadFace:
 
 @dataclass(frozen=True, eq=False)
 class CadModel:
-    """All vertices, edges and faces of a CAD file. Its method `boundary` only raises an error."""
+    """The vertices, edges and faces of a CAD file. `boundary` only raises an error: faces are in space."""
 
     vertices: Floats  # (n, 3) positions in the unit of the file
     # edges, faces: in the order of the file

@@ -54,8 +54,8 @@ class Lift:
     First, z = centre + quarter (zeta + 1/zeta), solved for zeta, maps a slit in the body to a circle.
     `centre` is the middle of the slit, and `quarter` a quarter of the vector from end to end of the slit.
     Then the maps `corners` straighten corners; `pole` is the centroid of the resulting wall. Last, w is the
-    logarithm of the distance vector from `pole`. `phase` is subtracted from phi, so that the first wall node
-    is at 0. Attributes may be torch tensors.
+    logarithm of the mapped point minus `pole`. `phase` is subtracted from phi, so that the first wall node is
+    at 0. Attributes may be torch tensors.
     """
 
     centre: Any
@@ -72,7 +72,7 @@ class Lift:
         return self.centre + self.quarter * (zeta + 1.0 / zeta)
 
     def to_strip(self, z: Complexes) -> Complexes:
-        """Return w (n,) at successive points `z` (n,) around the body; Im w does not jump between them."""
+        """Return w (n,) of points `z` (n,) in order around the body; Im w is continuous along them."""
         return _native.lift_to_strip(self, np.ascontiguousarray(z, complex))
 
 

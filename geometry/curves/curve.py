@@ -27,7 +27,7 @@ class Curve:
     An open curve has at least 2 `points` (n, 2), a closed curve at least 3. A closed curve may repeat its
     first point at the end. The tangent may jump at corners: the argument `corners` has the indices of points,
     or None to detect them; the attribute `corners` has their arc lengths. Intervals in the mask `straight`
-    (intervals,) are straight lines, and so is an interval between two corners. Raises InputError: too few
+    (intervals,) are straight lines, and so is an interval with two corners. Raises InputError: too few
     points; a point that is not finite or equals its neighbour; a corner out of range.
 
     >>> square = Curve(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), closed=True)

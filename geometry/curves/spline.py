@@ -107,8 +107,8 @@ def open_slopes(
     `stops` are indices of points, the first and the last among them. A spline joins each stop to the next.
     `chord` (intervals, d) are the vectors between points, `h` (intervals,) their lengths. `held` (2,
     intervals, d) fixes slopes: ``held[0, k]`` at the start of the spline that begins with interval k,
-    ``held[1, k]`` at the end of one that ends with it. Where the slope is not fixed, or is NaN, the end
-    interval is a parabola.
+    ``held[1, k]`` at the end of one that ends with it. Where this slope is not fixed, or is NaN, the first
+    or last interval of the spline is a parabola.
     """
     delta = chord / h[:, None]
     doubled = np.zeros(len(h) + 1, dtype=np.intp)

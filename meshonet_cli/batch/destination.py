@@ -28,13 +28,11 @@ if TYPE_CHECKING:
     from meshonet_cli.batch.drawn import DrawnInputs
     from meshonet_cli.terminal.session import Failures
 
-FIELDS = ("stem", "index", "name")
-"""Fields of a pattern for output names."""
+FIELDS = ("stem", "index", "name")  # fields of a pattern for output names
 # formats of fields: a width of up to three digits, no conversion of numbers to characters
 _FORM = re.compile(r"(?:[^{}]?[<>=^])?[-+ ]?#?\d{0,3}[,_]?(?:\.\d{0,3})?[sdxXobn]?")
 _LONGEST_NAME = 255  # longest file name in bytes on Linux, macOS and Windows
-MANY = 10_000
-"""Largest number of inputs that are written as a dataset without parts."""
+MANY = 10_000  # largest number of inputs that are written as a dataset without parts
 _PART_BYTES, _LIKELY_NODES = 1 << 28, 40_000  # largest size of a part in bytes; assumed nodes per grid
 _MOST_IN_PART, _MOST_FOR_MANY_WORKERS = 1000, 100  # inputs per part at most; if many workers share
 

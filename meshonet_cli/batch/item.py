@@ -15,8 +15,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 V = TypeVar("V")
-NO_NUMBER = -1
-"""Index of a member of a shard if the number of members before it is unknown."""
+NO_NUMBER = -1  # index of a member of a shard if the number of members before it is unknown
 
 
 @dataclass(frozen=True)
@@ -57,10 +56,8 @@ def stem_of(source: str) -> str:
     return "stdin" if source == "-" else Path(source).stem.replace(":", "")
 
 
-Outcome: TypeAlias = "tuple[Any, Timed] | Exception"
-"""A result to write and its report, or an error."""
-Pair: TypeAlias = tuple[Item[Any], Outcome]
-"""A member and its result."""
+Outcome: TypeAlias = "tuple[Any, Timed] | Exception"  # a result to write and its report, or an error
+Pair: TypeAlias = tuple[Item[Any], Outcome]  # a member and its result
 Make: TypeAlias = Callable[[Iterable[Item[Any]]], Iterator[Pair]]
 """Computes results of members in order; must be picklable to run in other processes."""
 

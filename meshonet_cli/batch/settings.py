@@ -71,5 +71,4 @@ class Engine:
         return opened
 
 
-HERE = Engine()
-"""This process."""
+HERE = Engine()  # this process

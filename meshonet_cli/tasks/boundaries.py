@@ -18,8 +18,7 @@ from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import Batch, BatchTask, each
 from meshonet_cli.report.delivered import Delivered, delivered, part_names
 
-EDGE_NODES = 1000
-"""Typical number of nodes on the edges of a boundary."""
+EDGE_NODES = 1000  # typical number of nodes on the edges of a boundary
 
 
 def write_boundaries(batch: Batch, sampling: Sampling, sensors: int | None = None) -> int:

@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from meshonet.geometry.aircraft.aircraft import Aircraft
     from meshonet.geometry.quality.criteria import Criteria
 
-VOLUME_NODES = 1_000_000
-"""Assumed number of nodes of a volume, which is not known in advance."""
+VOLUME_NODES = 1_000_000  # assumed number of nodes of a volume, which is not known in advance
 
 
 def write_stacks(

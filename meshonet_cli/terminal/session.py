@@ -27,10 +27,8 @@ if TYPE_CHECKING:
 
 Failures: TypeAlias = list[tuple[str, str, str, bool]]
 """Inputs, members, errors, and whether to try again: rows of `meshonet.formats.hdf5.index.Failed`."""
-GATE_NOT_MET = 1
-"""Exit code if a gate has failed."""
-SAME_ERRORS = 3
-"""Number of inputs that are listed for the same error; further ones are counted."""
+GATE_NOT_MET = 1  # exit code if a gate has failed
+SAME_ERRORS = 3  # number of inputs that are listed for the same error; further ones are counted
 
 
 class Session:

@@ -9,8 +9,7 @@ import warnings
 from types import FrameType
 from typing import Any, NoReturn
 
-LINES: list[Any] = []
-"""Status lines drawn by threads, which are stopped at the end of the program."""
+LINES: list[Any] = []  # status lines drawn by threads, which are stopped at the end of the program
 
 _asked: list[BaseException] = []
 
