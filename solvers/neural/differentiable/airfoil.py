@@ -29,7 +29,7 @@ CLOSED = 1e-2  # what is left of an angle's difference (radians) where a corner 
 class AirfoilGrids:
     """The neural operator for airfoils as a differentiable function; folded cells are not repaired.
 
-    `model` is an operator for airfoils, its name or its path; ``base`` means harmonic grids without a
+    `model` is an operator for airfoils, its name or its path; ``base`` means harmonic grids, made without a
     network. `polish` is the number of Picard steps that follow, or ``converged``. `device` is torch's name of
     the device. Raises InputError if the model does not exist, cannot be read, or is not for airfoils.
     """

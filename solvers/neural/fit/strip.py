@@ -78,7 +78,7 @@ class StripTask(Task):
         return list(decode(out.numpy().astype(np.float64), self.basis, self.scale, size))
 
     def figures(self, epoch: int) -> dict[str, Any]:  # noqa: ARG002
-        """Return quantiles of errors against Winslow's grids of held-out shapes, by the way to make grids."""
+        """Return error quantiles of several kinds of grids of held-out shapes, against Winslow's grids."""
         test, errors = self.held_out, dict[str, list[float]]()
         for wall, far, goal, answer in zip(test.wall, test.far, test.residual, self.answers(), strict=True):
             base = harmonic(wall, far, across().eta)
