@@ -40,7 +40,7 @@ def changes_in(notes: Iterable[str]) -> tuple[str, ...]:
 
 
 def change_facts(notes: Iterable[str]) -> dict[str, str]:
-    """Return the notes on changes (`Change`) as an entry of a grid's provenance, or an empty dict."""
+    """Return ``{"changes": text}`` with the notes that say how a shape was changed; empty without any."""
     changes = changes_in(notes)
     return {"changes": "; ".join(changes)} if changes else {}
 

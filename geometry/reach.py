@@ -15,7 +15,7 @@ def check_reach(
     ----------
     count, things : number that the request needs, and what is counted, such as cells.
     cause, remedy : texts of the error: what needs so many, and what to change.
-    parameter : Python name of the setting.
+    parameter : name of the Python argument that asks for so many, for the error; "" if there is none.
     """
     if not count <= most:
         problem = f"{cause} takes {count:.3g} {things}, more than {most:.3g}"

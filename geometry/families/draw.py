@@ -44,7 +44,7 @@ class Draw:
         return self.low + (self.high - self.low) * float(rng.random())
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return the boundary with node counts of `sampling`. Raises InputError: any other setting."""
+        """Return the boundary. Raises InputError: `sampling` has settings other than node counts."""
         ni, nj = sampling.ni or NODES, sampling.nj or NODES
         if self.family is None:
             module = import_module(f"meshonet.geometry.families.{RANDOM[self.kind]}")

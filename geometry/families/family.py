@@ -58,7 +58,7 @@ def family(name: str) -> Family:
 def polyline(corners: Corners, n: int, like: Corners | None = None) -> Floats:
     """Return `n` nodes (n, 2) along a polyline, in nearly equal steps; every corner is bitwise a node.
 
-    The corners have the node indices that they would have in the polyline `like`, if it is given.
+    Given `like`, the corners of another polyline, each corner has the node index of its counterpart there.
 
     >>> polyline([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)], 5).tolist()
     [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.0, 0.5], [1.0, 1.0]]

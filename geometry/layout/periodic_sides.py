@@ -34,7 +34,7 @@ def following(mesh: QuadMesh) -> Indices:
 
 
 def with_tied_sides(mesh: QuadMesh) -> QuadMesh:
-    """Return the mesh with nodes of periodic sides tied in pairs; both move, to differ by just the period."""
+    """Return the mesh after nodes of periodic sides are paired, and moved to differ by exactly the period."""
     if not mesh.domain.periodic:
         return mesh
     places, nodes = mesh.places, mesh.nodes.copy()

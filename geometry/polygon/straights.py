@@ -31,11 +31,11 @@ def find_kinks(points: Floats, *, few: int = FEW) -> Indices:
 
 
 def straight_intervals(points: Floats, corners: Indices) -> Bools:
-    """Return which intervals (n,) of a closed polygon `points` (n, 2) are straight lines.
+    """Return which edges (n,) of a closed polygon `points` (n, 2) are straight lines, not chords of a curve.
 
-    A straight interval is at least 4 times as long as the one before or after it, with no corner between the
-    two. At each end that is no corner, it is nearly tangent to the circular arc through this end and the next
-    two points. `corners` are indices of points.
+    Such an edge is at least 4 times as long as an adjacent edge, with no corner between the two. At either
+    end, unless it is a corner, the edge is nearly tangent to the circular arc through this end and the next
+    two points outside the edge. `corners` are indices of points.
     """
     turn, joined = turning(points, closed=True), np.ones(len(points), dtype=bool)
     turn[corners], joined[corners] = 0.0, False

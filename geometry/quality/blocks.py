@@ -63,10 +63,10 @@ LINES = ("growth_inside", "growth_across", "bend_inside", "bend_across")  # fiel
 
 
 def block_figures(grid: Grid, quality: Quality | None = None, known: Lines | None = None) -> BlockFigures:
-    """Return the figures of a multi-block grid.
+    """Return node counts, corner angles and growth along grid lines of a multi-block grid.
 
-    `quality` (of a volume grid) and `known` (figures of grid lines) may be given if they have been measured.
-    With a `quality` that has no percentiles, the result has none.
+    `quality` (of a volume) and `known` (growth and bends of grid lines) may be given if they have been
+    measured. With a `quality` that has no percentiles, the result has none.
     """
     if grid.form == "volume":
         from meshonet.geometry.quality.volumes import measure_volumes

@@ -22,7 +22,7 @@ _TINY = 1e-300  # in place of 0 in divisors
 
 
 Values: TypeAlias = tuple[tuple[int, ...], Floats | None, Floats]
-"""Of faces (m, n[, l]): cell of the first, angles in degrees (None at the boundary), skewness."""
+"""Of a plane of faces: a cell at the first; angles in degrees (None at boundaries) and skewness of all."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class Cells:
 
 
 def solid_faces(grid: Grid, cells: Sequence[Cells]) -> Iterator[Values]:
-    """Yield for groups of faces: a cell at the first face, non-orthogonality (None at boundary), skewness."""
+    """Yield per plane of faces: cell at the first; non-orthogonality (None at boundary), skewness of all."""
     for number, (block, own) in enumerate(zip(grid.blocks, cells, strict=True)):
         nodes = np.moveaxis(block.nodes, -1, 0)
         for axis in range(3):

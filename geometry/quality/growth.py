@@ -121,7 +121,7 @@ def most_of(extremes: Iterable[Extreme | None]) -> Extreme | None:
 
 
 def beyond_seam(grid: Grid) -> Floats:
-    """Return the nodes (ni, nj, 2) of a grid; in an O grid, the nodes with i = 1 are repeated at the end."""
+    """Return the nodes (ni, nj, 2) of a grid; of an O grid, (ni + 1, nj, 2) with one line past the seam."""
     return np.concatenate([grid.nodes, grid.nodes[1:2]]) if grid.periodic else grid.nodes
 
 

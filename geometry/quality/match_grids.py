@@ -24,7 +24,7 @@ class GridMatcher:
         self._passed: list[Grid] = []
 
     def match(self, name: str) -> Grid:
-        """Return the reference for the grid `name`, the next to be compared. Raises InputError: none fits."""
+        """Return the reference for the next grid, whose name is `name`. Raises InputError: there is none."""
         if self._pairing == "auto":
             self._pairing = self._decided(name)
         if self._pairing == "name":

@@ -117,12 +117,12 @@ class QualityReport:
         return replace(self, profile=self.profile.under(_parsed(gates))) if self.profile else self
 
     def broken(self, gates: Gates = ()) -> list[str]:
-        """Return a message for each limit in `gates` or in the quality profile by which the grid fails.
+        """Return a message for each broken limit in `gates` and for each failed check of the quality profile.
 
         `gates` is one text or several, such as ``max_angle>170`` or ``scaled_jacobian.p01<0.2``: conditions
         that must not hold. A message gives the value, its place and the limit.
 
-        Raises InputError: a text that is not a gate; a metric that this grid does not have.
+        Raises InputError: a text that is no such condition; a metric that this grid does not have.
         """
         return [spelled(line, lambda _: "the gate") for line in self._broken(_parsed(gates))]
 

@@ -30,16 +30,15 @@ class BladeSurface:
     """Surface of a blade: the map from a place u around the blade and a height h to (s, theta).
 
     u is 0 at the leading edge, 0.5 at the trailing edge, and 1 at the leading edge again (see
-    `BladeProfile`). For s and h, see `Channel`. theta is the angle about the axis. Lines of equal u are
-    splines through the profiles, and are continued straight beyond them.
+    `BladeProfile`). h goes from 0 at the hub to 1 at the casing, s from 0 at the inlet to 1 at the outlet
+    (see `Channel`). theta is the angle about the axis. Lines of equal u are splines through the profiles,
+    continued straight beyond them.
 
     Parameters
     ----------
-    profiles : two or more arrays (n, 3) of x, y, z, from hub to casing or back.
+    profiles : two or more arrays (n, 3) of x, y, z, in order from hub to casing or from casing to hub.
     channel : the channel in which the blade stands.
     blades : number of blades; profiles on different blades are rotated to lie on one blade.
-
-    The attribute `notes` says what was changed.
 
     Raises InputError: profiles that are not in order along the span, cross each other, lie too far apart
     around the axis, or leave a large gap at hub or casing; a faulty profile (see `BladeProfile`).

@@ -110,7 +110,7 @@ class Row:
 
     @property
     def changes(self) -> tuple[str, ...]:
-        """Notes on changes of the profiles."""
+        """Notes that say how the given profiles were changed."""
         return (*self.notes, *self.surface.notes)
 
     @property

@@ -27,7 +27,7 @@ class Section:
     shape : Airfoil or Outline
         An airfoil, or a closed curve, in any unit.
     chord : float
-        Chord to which the shape is scaled, in the unit of the stack.
+        Chord to which the shape is scaled, in the unit of x, y and z.
     z : float
         Position of the section's plane.
     x, y : float, optional
@@ -37,10 +37,10 @@ class Section:
     about : tuple of 2 float, optional
         Centre of the twist, in chords from the leading edge.
     cant : float or 'panel', optional
-        Angle in degrees by which the section is rotated about a line along x through its leading edge, from
-        z towards y. ``panel``: the mean of the wing's dihedral angles on both sides of the section.
+        Angle in degrees by which the normal of the section is tilted from z towards y, about a line along x
+        through the leading edge. ``panel``: the mean of the dihedral angles on both sides of the section.
     nodes : int, optional
-        Number of nodes from the previous section to this one, both ends included. None: the stack decides.
+        Number of nodes from the previous section to this one, both ends included. None: automatic.
 
     Raises
     ------
@@ -95,10 +95,10 @@ class Section:
 
 
 class Fade(NamedTuple):
-    """Transition of a section's grid nodes, with distance from its outline, to no twist and another chord."""
+    """How much of a section's twist and chord its grid nodes get: all at the outline, less away from it."""
 
-    weight: Floats  # (n,) 1: twist and chord of the section; 0: no twist, and the other chord
-    chord: float  # the other chord
+    weight: Floats  # (n,) 1: twist and chord of the section; 0: no twist, and `chord`
+    chord: float  # chord length by which nodes with weight 0 are scaled
 
 
 def placed(unit: Floats, placement: Floats, fade: Fade | None = None) -> Floats:

@@ -102,7 +102,7 @@ class Stack:
 
     @property
     def span(self) -> int | None:
-        """Number of nodes along the span; None if it is unknown between any two neighbouring sections."""
+        """Number of nodes along the span; None if `nodes` is None for any section but the first."""
         cells = [each for each in self.panel_cells if each is not None]
         return sum(cells) + 1 if len(cells) == len(self.panel_cells) else None
 
@@ -194,7 +194,7 @@ class Stack:
         return self.canted(nodes, z) if self.cants.any() else nodes
 
     def canted(self, nodes: Floats, z: Floats) -> Floats:
-        """Return `nodes` (m, ..., 3) of sections at `z` (m,), rotated by `cants` about x at leading edges."""
+        """Return `nodes` (m, ..., 3) of sections at `z` (m,), tilted by cant angles (see `Section`) there."""
         values = np.stack([np.array([section.y for section in self.sections]), self.cants], axis=1)
         y, cant = self.between_sections(values, z).reshape(len(z), *[1] * (nodes.ndim - 2), 2).T
         place = np.stack([y.T, z.reshape(y.T.shape)], axis=-1)

@@ -26,7 +26,7 @@ _STRAIGHT = 0.5  # a curve is a wall, not a closed outline, if its ends are this
 
 
 class DrawnEdge(NamedTuple):
-    """A side: its points (n, 2), a text such as ``line 3`` for each of them, and a name or ``""``."""
+    """A side of a domain: points (n, 2), the place of each in the file (as ``line 3``), and a name or ""."""
 
     points: Floats
     places: Sequence[str]

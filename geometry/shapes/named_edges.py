@@ -35,7 +35,7 @@ class Labelled:
         return getattr(self.shape, "notes", ())
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return the boundary, with each cell named after the edge nearest to its middle."""
+        """Return the boundary; pieces between two nodes get the name of the nearest edge, if one is near."""
         boundary = self.shape.boundary(sampling)
         sides: tuple[Side, ...] = ("south", "north") if boundary.around_body else SIDES
         patches = []

@@ -67,7 +67,7 @@ def polygon_shape(
 
 
 def domain_or_body(shape: Outline | Airfoil) -> Shape:
-    """Return the domain inside `shape` if it has four corners or more but is not four-sided; else `shape`."""
+    """Return the domain inside `shape` if it has over four corners, at least four convex; else `shape`."""
     if isinstance(shape, Airfoil) or shape.topology != "quad":
         return shape
     points = shape.curve.points

@@ -52,7 +52,7 @@ def stretch_arcs(
 
 
 def on_corners(distance: Floats, corners: Floats, fixed: tuple[int, ...] = (), step: int = 1) -> Floats:
-    """Return the distances (n,) of nodes along a curve, changed so that each of the `corners` (m,) is one.
+    """Return the `distance` (n,) of nodes along a curve, after a change that puts nodes at `corners` (m,).
 
     Each corner takes the nearest node whose index is a multiple of `step`, or any node if these are too few.
     The first, the last and the nodes with indices `fixed` stay. Raises InputError: more corners than nodes.

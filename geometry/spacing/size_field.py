@@ -51,9 +51,9 @@ def arcs_by_curvature(
     chord : chord length; the curvature is averaged over 0.2 % of it.
     steps : cell sizes at the trailing and at the leading edge.
     exact : for each of the `steps`, whether it is prescribed, to be met within 0.5 %.
-    hurried : whether growth may be `HURRY` times as fast if cells are too few.
+    hurried : whether growth may be 1.3 times as fast if cells are too few.
     at_edge : logarithm of the growth ratio next to the trailing edge; values below `GROWTH` have no effect.
-    based : whether the ends are the corners of a blunt trailing edge, at which cells are small.
+    based : whether the ends are the corners of a blunt trailing edge, where cells may grow faster.
     """
     lower, nose, upper = stations
     s = _samples(stations, steps)

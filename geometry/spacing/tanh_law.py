@@ -50,10 +50,10 @@ class TanhLaw:
 
     @classmethod
     def fitted(cls, cells: float, first: float, last: float, last_part: float = 1.0) -> Self:
-        """Return the law of `cells` cells whose first and last step are `first` and `last`, to within 1e-6.
+        """Return the law of `cells` cells from s = 0 to 1. The first is `first` long, the last `last`.
 
         With `last_part` = 0.5, only half of the last cell lies before s = 1, and `cells` counts it as a half.
-        Raises InputError: the two steps are too large together, or too few cells are between them.
+        Raises InputError: no law fits, as when both lengths are too large for so few cells.
         """
         start, end = first * cells, last * cells
         for _ in range(60):

@@ -21,9 +21,9 @@ class Hollows:
     Parameters
     ----------
     edges : (k, 2) the two nodes of each edge.
-    angles : (k,) outer angle between the two faces at each edge, in degrees, at most 150.
-    distance : (n,) length of the path along cells from each node to a concave edge, plus the width of the
-        cells at this edge; infinite if there are no concave edges.
+    angles : (k,) angle outside the body between the two faces at each edge, in degrees, at most 150.
+    distance : (n,) length of the shortest way along cell edges from each node to a concave edge, plus the
+        shortest cell edge that leaves it, so that none is 0; infinite if there are no concave edges.
     """
 
     edges: Indices
@@ -31,13 +31,14 @@ class Hollows:
     distance: Floats
 
     def sharpest(self) -> tuple[float, int] | None:
-        """Return the least angle at concave edges, in degrees, and a node there; None without such edges."""
+        """Return the sharpest concave angle, outside the body in degrees, and a node there; or None."""
         return self._at(int(self.angles.argmin())) if len(self.edges) else None
 
     def nearest(self, surface: Surface, numbers: Indices) -> tuple[float, int] | None:
-        """Return the outer angle (degrees) at the concave edge nearest to some nodes, and a node of the edge.
+        """Return the angle at the concave edge nearest to some nodes, and a node there.
 
-        `numbers` (n,) are these nodes. The result is None if the edge is more than 0.1 surface sizes away.
+        `numbers` (n,) are the indices of these nodes. The angle is measured outside the body, in degrees. The
+        result is None if the edge is farther away than 10 % of the surface's extent.
         """
         if not len(self.edges):
             return None

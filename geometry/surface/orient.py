@@ -52,8 +52,8 @@ def turned_alike(
 def closing_axes(nodes: Floats, sides: Indices, planes: Sequence[Plane]) -> list[int]:
     """Return the directions (0, 1, 2 for x, y, z) of the normals of those `planes` that close a surface.
 
-    `sides` is the result of `open_sides`. If the open edges outside the planes of one direction are only the
-    rim of a small hole, such as the open tail of half a fuselage, only this direction is returned.
+    `sides` is the result of `open_sides`. Only one direction is returned if its planes contain all open
+    edges except the rim of a small hole, such as the open tail of half a fuselage.
     """
     axes = sorted({plane.axis for plane in planes})
     slack = FLAT * extent_of(nodes)

@@ -45,8 +45,8 @@ def core_of(fan: Floats, quarters: int, most: int, *, even: bool = False) -> Pol
 
     `fan` (m + 1, n, 3) are the nodes of the patch; those with j = 0 are the pole. Cells beyond j = `most` are
     kept. `quarters` is the angle of the patch around the pole, in right angles. If it is 4, the nodes i = m
-    repeat those of i = 0, and m is even. The core's outline is a rounded square. In an `even` core lines have
-    no kinks, at which cell sizes would change by up to a factor of 2.
+    repeat those of i = 0, and m is even. The core's outline is a rounded square. Grid lines of the core
+    have kinks, at which cell sizes change by up to a factor of 2, unless it is `even`.
     """
     m = len(fan) - 1
     steps = norms(np.diff(fan, axis=1)).mean(axis=0)

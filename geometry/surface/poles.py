@@ -35,7 +35,7 @@ class _FanPatch:
 def without_poles(
     patches: Sequence[Floats], *, replace: bool = True
 ) -> tuple[list[Floats], list[int], tuple[str, ...]]:
-    """Return `patches` (ni, nj, 3) without poles, an index in `patches` for each returned patch, and notes.
+    """Return three results: patches (ni, nj, 3) without poles, for each an index in `patches`, and notes.
 
     A pole is a side that is a single point. New cells replace those around it. The cells in the middle form a
     new patch, the core, whose index is that of a patch that had the pole. Cores come last. Without `replace`,

@@ -38,13 +38,13 @@ _MOST_IN_PART, _MOST_FOR_MANY_WORKERS = 1000, 100  # inputs per part at most; if
 
 
 class Destination:
-    """Output of a batch: ``-``, one file, or a file for each result.
+    """Output of a batch: standard output (``-``), one file, or a file for each result.
 
     Parameters
     ----------
     text : file name, or a pattern with ``{stem}``, ``{index}`` or ``{name}`` for several files.
     fmt : name of the format; None: determined by the extension.
-    kind : kind of the results.
+    kind : what the results are: ``grids``, ``boundaries`` or ``layouts``.
     put : function that writes to a path; None: the writer of the format.
     part_size : number of inputs in a part of a dataset; None: derived from `nodes`.
     nodes : approximate number of nodes of a result.

@@ -215,9 +215,9 @@ def _wake_cells(
 
 
 def corner_cell(cells: float, first: float, chord: float) -> float:
-    """Return the length of wall cells at a blunt trailing edge.
+    """Return the length of wall cells at a blunt trailing edge: the wanted length `first`, or more.
 
-    This is `first`, or more if growth ratios of the `cells` around the airfoil would be over 1.5.
+    It is more if the airfoil has so few `cells` around it that growth ratios from `first` would exceed 1.5.
     """
     side = 0.5 * cells
     return max(first, chord / side * math.pow(_STEEP, -0.5 * side))

@@ -32,10 +32,10 @@ _HEAVIER = 2.0  # factor of the weight of an outlier in each round
 
 
 def smooth_ring(section: CleanSection, nose_radius: float, limit: float) -> tuple[Floats, float]:
-    """Return the points (n, 2) of a section, moved by up to `limit` to splines, and the largest displacement.
+    """Return the points (n, 2) of a section smoothed by splines, and the largest displacement of a point.
 
-    Corners are kept. A trailing edge is closed if it is thinner than `limit`, or if noise has moved its upper
-    point below its lower one. The sides are kept apart. Raises InputError: SciPy is not installed.
+    It is at most `limit`. Corners are kept. A trailing edge is closed if it is thinner than `limit`, or if
+    noise has moved its upper point below its lower one. Raises InputError: SciPy is not installed.
     """
     unsmoothed = np.concatenate([section.points, section.points[: 0 if section.blunt else 1]])
     points = _closed(unsmoothed, limit)

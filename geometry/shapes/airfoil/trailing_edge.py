@@ -37,10 +37,10 @@ _WEDGE_POINTS = 9  # on each side of a wedge
 
 
 def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
-    """Return a section with rounded corners at its blunt trailing edge (base), and half the base's length.
+    """Return `curve` with rounded corners at its blunt trailing edge (base), and half the new base's length.
 
-    `curve` and the returned curve are closed and begin in the middle of the base. The second and the last
-    point of `curve` are the corners. The new base includes the curves that round them.
+    `curve` and the returned curve are closed, begin in the middle of the base, and do not repeat this point.
+    The second and the last point of `curve` are the corners. The new base includes their roundings.
     """
     length, half = curve.length, float(curve.knots[1])
     across = min(_ACROSS * half, _CAP * chord)

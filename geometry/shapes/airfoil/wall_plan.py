@@ -85,8 +85,8 @@ def planned_arcs(body: Airfoil, ni: int, sampling: Sampling) -> Floats:
 def arcs_to_corners(body: Airfoil, cells: int, sampling: Sampling, first: float, ratio: float) -> Floats:
     """Return arc lengths (cells + 1,) of nodes around a body from corner to corner of a blunt trailing edge.
 
-    Cells at the corners have the length `first` unless `te_spacing` is given. From there they grow by at most
-    `ratio`. All corners are nodes.
+    Cells at the corners have the length `first` unless `sampling.te_spacing` is given. From there they grow
+    by factors of at most `ratio`. All corners of the body are nodes.
     """
     from meshonet.geometry.spacing.size_field import arcs_by_curvature
 
