@@ -23,7 +23,7 @@ LABELS = {
 
 
 def figures(quality: Quality) -> dict[str, float]:
-    """Return measures of a grid for a table of many grids, by name of the column."""
+    """Return quality measures of a grid, by name of their column in a table of many grids."""
     angle = quality["max_angle"]
     return {"folded": quality.folded, "max_angle": angle.max, "mean_angle": angle.mean}
 

@@ -64,7 +64,7 @@ def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
 
 
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
-    """Return at which nodes of a wing's section grid lines to the corners of the rectangle `box` begin.
+    """Return which nodes of a wing's section are joined by grid lines to the corners of the rectangle `box`.
 
     The first number counts nodes from the middle of the trailing edge: there, lines to the rear corners
     begin. The second counts nodes from the nose: there, lines to the front corners begin. Both are at least
@@ -89,7 +89,7 @@ def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
 
 
 def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]:
-    """Return the lengths of 2 `corners[0]` equal cells on the rear of `box`, 2 `corners[1]` on its front."""
+    """Return cell lengths if the rear of `box` has 2 `corners[0]` equal cells, its front 2 `corners[1]`."""
     edge, nose = corners
     return (box.high - box.low) / (2 * edge), (box.high - box.low) / (2 * nose)
 

@@ -78,7 +78,7 @@ class CollarPlan:
 
 
 def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
-    """Return at which nodes of a wing's section grid lines to the corners of a rectangle around it begin.
+    """Return which nodes of a wing's section are joined by lines to the corners of a rectangle around it.
 
     The first number counts nodes from the trailing edge, for the rear corners; the second counts nodes from
     the nose, for the front corners. Both are means over the sections `holes`.

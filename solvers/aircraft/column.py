@@ -81,7 +81,7 @@ class ColumnPlan:
         return replace(self, collars=(replace(first, low=low, top=top), *fins))
 
     def evened(self, widest: float) -> ColumnPlan:
-        """Return a plan that limits the height of the outermost cells of grids at wings, above and below.
+        """Return a plan that limits the heights of cells at the upper and the lower edge of a wing's grid.
 
         The limit is `widest` times the mean height of cells from there to the body's top or bottom.
         """

@@ -25,8 +25,8 @@ def columns_of(
 ) -> tuple[tuple[int, ...], ...]:
     """Return groups of wings, as indices, from nose to tail; a fin above a wing is in the wing's group.
 
-    `sections` has, for each wing, n nodes on each of k nested surfaces that enclose the body: (k, n, 3) in
-    the coordinates of `space`. Raises InputError if a fin is above two wings.
+    `sections` has, for each wing, n nodes around it on each of k nested surfaces that enclose the body:
+    (k, n, 3) in the coordinates of `space`. Raises InputError if a fin is above two wings.
     """
     columns = [[k] for k in range(len(wings))]
     along = [_along(space, *pair) for pair in zip(wings, sections, strict=True)]
