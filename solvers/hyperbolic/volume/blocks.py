@@ -5,7 +5,7 @@ from itertools import groupby
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices, Side
+from meshonet.geometry.arrays import Bools, Floats, Side
 from meshonet.geometry.blocks.block import Block, face_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
@@ -21,7 +21,7 @@ def blocks_of(surface: Surface, lines: Floats) -> tuple[Block, ...]:
     return tuple(Block(np.moveaxis(lines[:, lattice], 0, -1)) for lattice in surface.lattices)
 
 
-def volume_grid(surface: Surface, blocks: tuple[Block, ...], in_plane: Indices) -> Grid:
+def volume_grid(surface: Surface, blocks: tuple[Block, ...], in_plane: Bools) -> Grid:
     """Return the grid of `blocks`; `in_plane` (k,) is True for open edges in planes of symmetry."""
     top = blocks[0].counts[2] - 1
     sides = [

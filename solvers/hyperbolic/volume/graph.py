@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices
+from meshonet.geometry.arrays import Bools, Floats, Indices
 from meshonet.geometry.surface.planes import Plane
 from meshonet.geometry.surface.surface import Surface
 
@@ -68,7 +68,7 @@ class MarchGraph:
 
 
 def march_graph(
-    surface: Surface, planes: Sequence[Plane], in_plane: Indices, hollow: Floats, splay: float, boost: float
+    surface: Surface, planes: Sequence[Plane], in_plane: Bools, hollow: Floats, splay: float, boost: float
 ) -> MarchGraph:
     """Return the nodes of a surface with their neighbours, in the order of the march.
 

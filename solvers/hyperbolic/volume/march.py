@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices
+from meshonet.geometry.arrays import Bools, Floats, Indices
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.elementary import exp
 from meshonet.geometry.errors import InputError, NoValidGridError
@@ -88,7 +88,7 @@ def march_surface(
 
 
 def _best(
-    surface: Surface, planes: tuple[Plane, ...], inside: Indices, nodes: Floats, hollows: Hollows,
+    surface: Surface, planes: tuple[Plane, ...], inside: Bools, nodes: Floats, hollows: Hollows,
     steps: Floats, growth: float, *, wing: bool,
 ) -> tuple[_Volume, int]:  # fmt: skip
     """Return the first volume that is good enough, or the best one, and the number of attempts.

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices, norms
+from meshonet.geometry.arrays import Bools, Floats, Indices, norms
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.surface.planes import FLAT, Plane, edges_in
 from meshonet.geometry.surface.surface import Surface
@@ -21,7 +21,7 @@ class Symmetry(NamedTuple):
     """Planes of symmetry of a surface, the open edges (edges of one face only) in each, and notes."""
 
     planes: tuple[Plane, ...]
-    inside: Indices  # (p, k) whether open edge k is in plane p
+    inside: Bools  # (p, k) whether open edge k is in plane p
     notes: tuple[str, ...]
 
 
@@ -63,7 +63,7 @@ def closes_in(surface: Surface, plane: Plane) -> float:
     return float((towards * np.abs(away)).sum() / towards.sum())
 
 
-def symmetry_planes(surface: Surface, axis: str | None) -> tuple[tuple[Plane, ...], Indices]:
+def symmetry_planes(surface: Surface, axis: str | None) -> tuple[tuple[Plane, ...], Bools]:
     """Return planes normal to `axis` that contain open edges of a surface, and the edges in each plane.
 
     The edges are a mask (p, k) for p planes and all k open edges. For `axis` see `symmetry_of`. Raises
@@ -96,7 +96,7 @@ def _named(nodes: Floats, sides: Indices, axis: int, slack: float) -> tuple[Plan
     return tuple(planes)
 
 
-def in_planes(surface: Surface, planes: tuple[Plane, ...], inside: Indices) -> Floats:
+def in_planes(surface: Surface, planes: tuple[Plane, ...], inside: Bools) -> Floats:
     """Return the nodes (n, 3), those of open edge k moved exactly into plane p where ``inside[p, k]``."""
     nodes, edges = surface.nodes.copy(), surface.open_edges
     for plane, flags in zip(planes, inside, strict=True):
@@ -104,7 +104,7 @@ def in_planes(surface: Surface, planes: tuple[Plane, ...], inside: Indices) -> F
     return nodes
 
 
-def free_edges_note(surface: Surface, inside: Indices) -> str:
+def free_edges_note(surface: Surface, inside: Bools) -> str:
     """Return a note on open edges that are in no plane of symmetry; empty if there are none."""
     edges = surface.open_edges
     free = ~inside.any(axis=0) if len(inside) else np.ones(len(edges), dtype=bool)
