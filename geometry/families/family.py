@@ -56,7 +56,7 @@ def family(name: str) -> Family:
 
 
 def polyline(corners: Corners, n: int, like: Corners | None = None) -> Floats:
-    """Return `n` nodes (n, 2) along a polyline, in nearly equal steps; every corner is bitwise a node.
+    """Return `n` nodes (n, 2) along a polyline, in nearly equal steps; every corner is exactly a node.
 
     Given `like`, the corners of another polyline, each corner has the node index of its counterpart there.
 

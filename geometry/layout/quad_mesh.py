@@ -177,7 +177,7 @@ class QuadMesh:
         return self.with_nodes(nodes, arc)
 
     def with_places(self, nodes: Floats, places: Places) -> QuadMesh:
-        """Return the same quads with other coordinates `nodes` (n, 2), and other boundary data `places`."""
+        """Return the same quads with other coordinates `nodes` (n, 2) and `places` along the boundary."""
         moved = replace(self, nodes=nodes, places=places)
         known = ("_sides", "on_wall", "wall_nodes", "valence", "irregular", "of_quads")
         # these depend on the quads alone

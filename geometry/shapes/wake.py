@@ -42,7 +42,7 @@ def cells_of_wake(
 
     If `nodes_wanted`, the number of nodes on the wake, is None, cells grow by 13.5 % from the length `first`
     and fill `length`. Their number is kept between 20 and 23 % of all cells along xi, and is a multiple of
-    the first of `steps` that is at most a quarter of it, or else the last. Raises InputError: too few nodes.
+    the first of `steps` that is at most a quarter of it, or of the last. Raises InputError: too few nodes.
     """
     if nodes_wanted is not None:
         cells = nodes_wanted - 1

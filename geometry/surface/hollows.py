@@ -31,7 +31,7 @@ class Hollows:
     distance: Floats
 
     def sharpest(self) -> tuple[float, int] | None:
-        """Return the sharpest concave angle, outside the body in degrees, and a node there; or None."""
+        """Return the sharpest concave angle in degrees, outside the body, and a node there; or None."""
         return self._at(int(self.angles.argmin())) if len(self.edges) else None
 
     def nearest(self, surface: Surface, numbers: Indices) -> tuple[float, int] | None:
