@@ -50,8 +50,8 @@ def rounded(values: Floats, domain: Domain) -> Floats:
 def with_periodic_sides(domain: Domain, pairs: Sequence[tuple[str, str]]) -> Domain:
     """Return the domain with periodic sides of its outer loop; `pairs` gives the two names of each pair.
 
-    Points at which a periodic side turns by less than 45 degrees are no longer corners, so that nodes can
-    move there. Raises InputError: no part of the outer loop has one of the names; a name is given twice; the
+    Points at which a periodic side turns by less than 45 degrees are no longer corners: nodes there may
+    move. Raises InputError: no part of the outer loop has one of the names; a name is given twice; the
     sides of a pair are not translated copies of each other (the message gives the distance).
     """
     if not pairs:

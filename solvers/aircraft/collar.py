@@ -38,7 +38,7 @@ Within: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 
 @dataclass(frozen=True)
 class Rectangle:
-    """A rectangle that encloses a wing's section: limits along the body, then limits around the body."""
+    """A rectangle around the section of a wing, with sides along and around the body; its four limits."""
 
     front: float
     back: float
@@ -137,9 +137,9 @@ def _shifted(places: Floats, box: Rectangle, towards: float) -> Floats:
 def collar(
     root: Floats, outer: Floats, rows: int, first: float, last: Floats, straight: float = 0.0
 ) -> tuple[Floats, float]:
-    """Return a grid between two closed loops, and the sine of the smallest angle in a preliminary grid.
+    """Return a grid between two closed loops, and the sine of the smallest angle in its first approximation.
 
-    The nodes (n, rows + 1, 2) are on the lines of the preliminary grid, from `root` to `outer` (n, 2).
+    The nodes (n, rows + 1, 2) are on the lines of this approximation, from `root` to `outer` (n, 2).
 
     Parameters
     ----------

@@ -17,8 +17,8 @@ def ring_steps(lengths: Floats, sizes: Floats, rows: int, first: float | None) -
     """Return the steps (k, rows) between nodes on k lines with `lengths` (k,).
 
     `sizes` (k,) are the lengths of the cells beyond the ends of the lines. Along a line, steps change by one
-    ratio from `first` to the size of the cell beyond, then stay equal. If `first` is None, all change up to
-    this size. If ratios up to `LARGEST` are not enough, steps do not add up to the length of the line.
+    ratio from `first` to the size of the cell beyond, then stay equal. If `first` is None, they change by one
+    ratio along the whole line, up to this size. If ratios up to `LARGEST` are not enough, they do not fill it.
     """
     most = math.log(LARGEST)
     low, high = np.full(len(lengths), 0.0 if first else -most), np.full(len(lengths), most)

@@ -22,7 +22,7 @@ def recorded(
 ) -> Tensor:
     """Return nodes (batch, ni, nj, 2) that `function` computes from `sides` (batch, n, 2), also under `vmap`.
 
-    Raises MemberError if a batch member has no grid; if `counts` (ni, nj) is given, its nodes are NaN.
+    A batch member without a grid raises MemberError or, if its node `counts` (ni, nj) are given, gets NaN.
     """
     call = partial(_of_unit_size, function)
     if counts is not None:

@@ -72,9 +72,9 @@ def _share(values: Bools) -> float:
 def excess(z: Tensor, goal: Tensor) -> tuple[Tensor, Tensor, Tensor]:
     """Return three measures (batch,) of how much worse angles in grids `z` are than in grids `goal`.
 
-    Both grids have complex nodes (batch, m, n). The first two measures compare the greatest angle of each
-    cell. They are the increases from `goal` to `z`, in radians, of its mean and of its maximum over all
-    cells; decreases count as 0. The third grows with cells that are folded, or nearly so, and worse than in
+    Both grids have complex nodes (batch, m, n). The first two measures are the increases, in radians,
+    of the mean and of the maximum of the cells' greatest angles, from `goal` to `z`; decreases count as
+    0. The third grows with cells that are folded, or nearly so, and worse than in
     `goal`: the greatest angle is larger than in `goal` and above 172 degrees (`WIDE`), or the least is
     smaller than in `goal` and below 2 degrees (`NARROW`).
     """

@@ -71,8 +71,8 @@ SEEN: Floats = np.stack([_seen(element) for element in ELEMENTS])  # (8, FEATURE
 def table(size: int) -> Integers:
     """Return which parameters the entries of an equivariant convolution kernel take: (8, 8, size²) indices.
 
-    Output channels h and input channels g belong to the 8 symmetries of a square. At position p,
-    the kernel has the entry w[h⁻¹ g](h⁻¹ p). Indices are those of w (8, size, size) as a flat array.
+    Each output channel and each input channel belongs to one of the 8 symmetries of a square. For the
+    symmetries h and g, the kernel at position p is w[h⁻¹ g](h⁻¹ p). Indices are for w (8, size, size), flat.
     """
     count = size * size
     return np.asarray(RELATIVE[:, :, None] * count + TAPS[size].reshape(ORDER, 1, count))
