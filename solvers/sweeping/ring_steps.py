@@ -18,7 +18,7 @@ def ring_steps(lengths: Floats, sizes: Floats, rows: int, first: float | None) -
 
     `sizes` (k,) are the lengths of the cells beyond the ends of the lines. Along a line, steps change by one
     ratio from `first` to the size of the cell beyond, then stay equal. If `first` is None, they change by one
-    ratio along the whole line, up to this size. If ratios up to `LARGEST` are not enough, they do not fill it.
+    ratio along the whole line, up to this size. With a ratio of at most `LARGEST`, they may not fill it.
     """
     most = math.log(LARGEST)
     low, high = np.full(len(lengths), 0.0 if first else -most), np.full(len(lengths), most)
