@@ -208,8 +208,8 @@ Bodies for which Winslow's or the variational solver ends with an error are left
 TAIL = """
 ## Conclusions
 
-- **Default**: without `--model`, `infer` makes a conformal map, and uses `hole-o` only for [compact
-  bodies](../theory/operators.md) without such a map.
+- **Default**: without `--model`, `infer` makes the grid by a conformal map. It uses `hole-o` only for
+  [compact bodies](../theory/operators.md) for which the computation of the map fails.
 - **Quality**: all 44 grids of `hole-o --polish 5` are valid. The gain in mean angle is 93 to 96 %.
 - **Time**: `hole-o --polish 5` takes about three times as long as Winslow's solver, and a third of the time
   of the variational solver.

@@ -51,8 +51,9 @@ Methods:
   distance r (Witteveen, Bijl, AIAA 2009-3996).
 - *IDW, rotations*: displacements and rotations, with weights r^-3 + c r^-5 and a constant c (Luke, Collins,
   Blades, J. Comput. Phys. 231 (2012) 586-601).
-- *deform*: as *IDW, rotations*, but with weights r^-2 + c r^-4, and distant boundary nodes in groups. If
-  cells are folded, `deform` repeats the deformation in several steps (here for {steps} deformations).
+- *deform*: as *IDW, rotations*, but with weights r^-2 + c r^-4. Groups of distant boundary nodes are treated
+  as one node. If cells are folded, `deform` repeats the deformation in several steps (here for {steps}
+  deformations).
 
 Columns:
 

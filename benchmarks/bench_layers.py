@@ -56,8 +56,8 @@ domains and airfoils without a conformal map are left out.
 """
 
 TAIL = """
-- In double precision, the grids agree with those of the compiled solvers to 2e-11; in single precision, to
-  the rounding error of the nodes, 6e-8.
+- If torch computes in double precision, the grids agree with those of the compiled solvers to 2e-11. In
+  single precision they agree to the rounding error of nodes, 6e-8.
 - `meshonet.layer` folds no cells that the compiled solvers do not fold. `solve-pde` repairs folded cells;
   `meshonet.layer` does not.
 - A gradient takes 0.15 to 1.8 times the CPU time of the grid.

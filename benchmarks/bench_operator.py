@@ -250,8 +250,8 @@ Terms and columns:
 
 - *procedural airfoils*: random airfoils that a formula generates; none was used to train a network.
   *spacing*: how the wall nodes are distributed (`--spacing`).
-- *(60)* in a heading: number of shapes, including shapes without a converged solution of Winslow's
-  equations, which the table leaves out.
+- *(60)* in a heading: number of shapes. The table has fewer if Winslow's equations have no converged
+  solution for some of them.
 - *grids without folded cells*: share of grids, before repair.
 - *distance*: root mean square distance of the nodes from those of a reference grid, divided by the root mean
   square distance of the reference nodes from the centre of the shape.

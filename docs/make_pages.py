@@ -255,9 +255,10 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "The solver's variational grid has smaller angles than Winslow's grid: the largest angles of cells\n"
-        f"decrease, and so does their average. The network achieves {100 * gain['mean_gain']:.0f} % of the "
-        f"decrease of the average,\nand {100 * gain['max_gain']:.0f} % of the decrease of the maximum.",
+        "Take the largest angle of each cell, and its mean and maximum over the cells. Both are smaller in\n"
+        "the solver's variational grid than in Winslow's grid. The network's variational grid has "
+        f"{100 * gain['mean_gain']:.0f} % of\nthis reduction in the mean, and "
+        f"{100 * gain['max_gain']:.0f} % in the maximum.",
     ]
     return lines
 

@@ -51,8 +51,8 @@ NETWORKS = """
 
 ## Networks trained for a short time
 
-The names after `train --model` are [MeshONet and other networks](../theory/paper-models.md) that predict
-grids.
+The rows `train --model NAME` of the tables are for [MeshONet and other
+networks](../theory/paper-models.md) that predict grids.
 
 - `mgnet` and `meshnet` are trained with 500 steps for one geometry, here for the first shape of each kind.
   The training is part of their CPU time.
