@@ -56,8 +56,8 @@ chords.
 
 - *scaled Jacobian*: smallest [scaled Jacobian](../reference/metrics.md#cells-of-volumes) of a grid.
 - *first-cell error*: largest relative error of the first-cell heights of a grid.
-- *even growth*: share of the pairs of adjacent edges along a grid line in which the longer edge is at most
-  1.3 times as long as the shorter. Grid lines continue from block to block.
+- *even growth*: Take all pairs of adjacent edges on a grid line. The figure is the share of pairs whose
+  longer edge is at most 1.3 times as long as the shorter. Grid lines continue from block to block.
 - *angle to the wall normal*: angle between a grid line that leaves a wall and the wall normal; 95th
   percentile of a grid.
 

@@ -255,10 +255,10 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "Take the largest angle of each cell, and its mean and maximum over the cells. Both are smaller in\n"
-        "the solver's variational grid than in Winslow's grid. The network's variational grid has "
-        f"{100 * gain['mean_gain']:.0f} % of\nthis reduction in the mean, and "
-        f"{100 * gain['max_gain']:.0f} % in the maximum.",
+        "Compared with Winslow's grid, the solver's variational grid reduces the largest angle of a cell:\n"
+        "its mean over the cells and its maximum. The network's variational grid achieves "
+        f"{100 * gain['mean_gain']:.0f} % of\nthe reduction of the mean, and "
+        f"{100 * gain['max_gain']:.0f} % of that of the maximum.",
     ]
     return lines
 

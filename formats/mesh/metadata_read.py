@@ -24,7 +24,7 @@ from meshonet.geometry.errors import InputError
 
 
 def number_of_grid(facts: Facts) -> int | None:
-    """Return which grid of the file a block belongs to: its number in metadata `facts`; None without one."""
+    """Return the number of the grid that a block belongs to, from its metadata `facts`; None: not stored."""
     words = facts["block"][0].split() if facts.get("block") else []
     return int(words[0]) if len(words) == 2 and all(w.isdecimal() and len(w) < 9 for w in words) else None
 

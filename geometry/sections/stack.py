@@ -102,7 +102,7 @@ class Stack:
 
     @property
     def span(self) -> int | None:
-        """Number of nodes along the span; None if `nodes` is None for any section but the first."""
+        """Number of nodes along the span; None if a section after the first has no `nodes`."""
         cells = [each for each in self.panel_cells if each is not None]
         return sum(cells) + 1 if len(cells) == len(self.panel_cells) else None
 

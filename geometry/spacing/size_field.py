@@ -39,10 +39,11 @@ def arcs_by_curvature(
 ) -> Floats:
     """Return arc lengths (cells + 1,) from one end of the trailing edge around the nose to the other.
 
-    The cell size h combines four sizes, 1/h⁴ = Σ 1/hₖ⁴. Two are the sizes at the trailing and at the leading
-    edge plus `GROWTH` (ln 1.1) times the distance from there. One is the length on which the curve turns by 3
-    degrees. One is the same everywhere, such that there are `cells` cells. If the first three alone need more
-    cells, the growth, the size at the leading edge and the angle of 3 degrees are increased.
+    The cell size h combines four sizes, 1/h⁴ = Σ 1/hₖ⁴. Two grow linearly away from the trailing and from
+    the leading edge: the size at the edge plus `GROWTH` (ln 1.1) times the distance from it. One is the
+    length on which the curve turns by 3 degrees. One is the same everywhere, such that there are `cells`
+    cells. If the first three alone need more cells, the growth, the size at the leading edge and the angle of
+    3 degrees are increased.
 
     Parameters
     ----------

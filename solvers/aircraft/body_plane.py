@@ -182,8 +182,8 @@ class BodyEnd:
         """Return the plan of the patches between the tip of nose or tail and the nearest wing.
 
         Nodes are s, theta, zeta: along, around and away from the body, s = 0 at the tip. `points` maps them
-        to x, y, z. `sides` has one pair for each of the nested surfaces around the body, innermost first: the
-        nodes (n, 3) on the edge towards the wing, and the lengths in s (n,) of the cells at this edge.
+        to x, y, z. For each of the nested surfaces around the body, from the innermost, `sides` has a
+        pair: the nodes (n, 3) on the edge towards the wing, and the lengths in s (n,) of the cells there.
         """
         nodes, cells = sides[0]
         way, last = min((float(nodes[k, 0]), float(cells[k])) for k in (0, -1))

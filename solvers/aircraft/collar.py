@@ -89,7 +89,7 @@ def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
 
 
 def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]:
-    """Return cell lengths if the rear of `box` has 2 `corners[0]` equal cells, its front 2 `corners[1]`."""
+    """Return the cell lengths at the rear and at the front of `box`, which have 2 * `corners` equal cells."""
     edge, nose = corners
     return (box.high - box.low) / (2 * edge), (box.high - box.low) / (2 * nose)
 

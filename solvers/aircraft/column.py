@@ -65,7 +65,7 @@ class ColumnPlan:
 
     @property
     def beside(self) -> tuple[int, int]:
-        """Total number of cells along front edges of the grids at wing and fin, and along the rear edges."""
+        """Cells along the front, and along the rear edges, of all collars (grids around wing and fin)."""
         shares = [1 if self.fin and each is self.collars[-1] else 2 for each in self.collars]
         before = sum(n * each.nose for n, each in zip(shares, self.collars, strict=True))
         return before, sum(n * each.edge for n, each in zip(shares, self.collars, strict=True))

@@ -90,7 +90,7 @@ class LoftedMap(BodyMap):
         return (self.points(places + step) - self.points(places - step)) / (2.0 * _STEP)
 
     def normals(self, foot: Floats) -> Floats:
-        """Return the body's unit normals in x, y, z (n, 3), at `foot` (n, 3): s, theta, zeta of `BodyMap`."""
+        """Return the body's unit normals (n, 3) in x, y, z, at points `foot` (n, 3): s, theta and zeta."""
         length, normals = self.body.length, self._normals(_off_poles(foot, self.body.length))
         theta = np.linspace(0.0, np.pi, _AROUND)
         for end in (0.0, length):

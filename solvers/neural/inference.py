@@ -142,7 +142,7 @@ class OperatorMethod:
 
     @cached_property
     def together(self) -> Topology | None:
-        """The topology whose boundaries are computed in batches; None if all are computed one by one."""
+        """Topology of boundaries whose grids are computed in batches; None: all grids one by one."""
         if self.device is None and self.model == BASE:
             return None  # no network
         if self.model is not None and makes_volumes(self.model):

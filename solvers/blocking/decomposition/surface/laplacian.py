@@ -27,7 +27,7 @@ class Laplacian:
         return self.pattern.factor(np.append(self._edges, self._diagonal + mass))
 
     def flow(self, values: Complexes) -> Complexes:
-        """Return the right-hand side of Laplace's equation; `values` (n,) are known values, 0 at unknowns."""
+        """Return the right-hand side of the discrete equation from known `values` (n,), 0 at unknowns."""
         surface, weight = self.surface, self.surface.edge_weights
         corner = values[surface.triangles]
         flow = -weight * corner[:, NEXT] - weight[:, PREVIOUS] * corner[:, PREVIOUS]
