@@ -255,10 +255,10 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "Compared with Winslow's grid, the solver's variational grid reduces the largest angle of a cell:\n"
-        "its mean over the cells and its maximum. The network's variational grid achieves "
-        f"{100 * gain['mean_gain']:.0f} % of\nthe reduction of the mean, and "
-        f"{100 * gain['max_gain']:.0f} % of that of the maximum.",
+        "Two measures of a grid are the mean and the maximum of its cells' largest angles. Both are smaller\n"
+        "for the solver's variational grid than for Winslow's grid. The network achieves "
+        f"{100 * gain['mean_gain']:.0f} % of the\ndifference of the means, and "
+        f"{100 * gain['max_gain']:.0f} % of the difference of the maxima.",
     ]
     return lines
 

@@ -97,7 +97,7 @@ class Inputs:
     def parts(self, size: int) -> Iterator[tuple[int, tuple[str | InputError, ...]]]:
         """Yield number and inputs of each part of the shard; `size` inputs or dataset samples form a part.
 
-        Shard k of n has every n-th part. The content of a part therefore does not depend on the shard.
+        Parts of all inputs are numbered, and shard k of n has every n-th part: shards do not change parts.
         """
         number, left = 0, size
         entries: list[str | InputError] = []

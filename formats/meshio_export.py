@@ -22,7 +22,7 @@ _SETTINGS: dict[str, dict[str, object]] = {
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write the only grid of `grids` by the package meshio, in the format that `options` name."""
+    """Write `grids`, which must be a single grid, by the package meshio in the format that `options` name."""
     import meshio
 
     (kind,) = options or {"stl"}

@@ -53,7 +53,7 @@ def faces(grid: Grid) -> FaceMeasures:
 def worst_faces(grid: Grid, name: str) -> list[Floats]:
     """Return, for each block, the largest value (ni-1, nj-1[, nk-1]) of measure `name` on faces of each cell.
 
-    A face between two cells counts only for the cell with the lower index. Raises InputError: a surface.
+    A face between two cells counts only for the cell with the lower index. Raises InputError for surfaces.
     """
     if name == "box_ratio":
         volume = grid.form == "volume"

@@ -90,7 +90,7 @@ class BladeProfile:
         return made
 
     def aligned(self, places: Floats) -> Self:
-        """Return the profile with u, the coordinate around it, rescaled to be `places` (c,) at corners."""
+        """Return the profile with another coordinate u around it; u is `places` (c,) at corners."""
         made, own = copy(self), self.corner_places()
         u = np.concatenate([_ENDS, places])
         way = np.concatenate([self._stops[1], np.interp(own, *self._stops)])

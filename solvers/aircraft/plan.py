@@ -108,7 +108,7 @@ def plan_of(
 ) -> tuple[AircraftPlan, tuple[str, ...]]:
     """Return the plan of a grid (numbers of cells, shapes of wings), and notes for the user.
 
-    It has about the requested number of cells or of nodes around wings. Raises as `AircraftPlan.of`.
+    The grid has about as many cells, or nodes around wings, as requested. Raises as `AircraftPlan.of`.
     """
     if request.cells is None:
         plan = AircraftPlan.of(aircraft, request, space, request.surface.around)

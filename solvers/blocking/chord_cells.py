@@ -15,7 +15,7 @@ STEEPEST = 8.0  # largest ratio of the largest to the smallest cell along an edg
 
 
 class WantedCounts:
-    """Converts target sizes at fixed points to cell counts of chords (rows of blocks)."""
+    """Computes cell counts of chords (rows of blocks) from target sizes at given points."""
 
     def __init__(self, chords: Chords, metric: SizeMetric) -> None:
         self.chords = chords

@@ -103,8 +103,8 @@ class Passage:
     def domain(self, inlet: float, outlet: float) -> Domain:
         """Return the domain of the blocks between the blade, the inlet and the outlet.
 
-        `inlet` and `outlet` are the distances, in pitches, of the upper ends of inlet and outlet from the
-        blade's `centre`, measured along the pitch vector. The lower ends are one pitch below.
+        The upper end of the inlet is `inlet` pitches above the blade's `centre`, measured along the pitch
+        vector, that of the outlet `outlet` pitches. The lower ends are one pitch below.
         """
         pitch = abs(self.period)
         x, far = (self.inlet, self.outlet), (self.inlet - pitch, self.outlet + pitch)

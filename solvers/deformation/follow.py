@@ -90,7 +90,7 @@ class Follow:
         return cls(table, sources, turning, slide, field, inner)
 
     def nodes_to(self, to: Floats) -> Floats:
-        """Return new positions (n, d) of all nodes; only moved boundary nodes are read from `to` (n, d)."""
+        """Return new positions (n, d) of all nodes; rows of `to` (n, d) have those of moved boundary nodes."""
         there = self.boundary_to(to)
         there[self.inner] += self.field.blended(self._motions(self.field, there))
         return there

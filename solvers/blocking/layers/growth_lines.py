@@ -94,7 +94,7 @@ class GrowthLines:
     def largest_at(self, mesh: QuadMesh, rows: list[Indices]) -> Floats:
         """Return, for each node (n,), the largest |log(length ratio)| of consecutive edges that meet there.
 
-        A node on a line in the tables `rows` (lines, nodes) gets at least the value of the line's first node.
+        Each table of `rows` has node indices (lines, m). On a line, no value is below that of its first node.
         """
         growth = np.zeros(len(mesh.nodes))
         np.maximum.at(growth, self.nodes[:, 1], np.abs(self.growth(complex_of(mesh.nodes))))
