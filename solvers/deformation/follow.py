@@ -90,7 +90,7 @@ class Follow:
         return cls(table, sources, turning, slide, field, inner)
 
     def nodes_to(self, to: Floats) -> Floats:
-        """Return new positions (n, d) of all nodes; rows of `to` (n, d) have those of moved boundary nodes."""
+        """Return new positions (n, d) of all nodes; `to` (n, d) has those of the moved boundary nodes."""
         there = self.boundary_to(to)
         there[self.inner] += self.field.blended(self._motions(self.field, there))
         return there
