@@ -46,6 +46,12 @@ def norms(vectors: Floats) -> Floats:
     return np.sqrt(dots(vectors, vectors))
 
 
+def growth_ratios(lengths: Floats) -> Floats:
+    """Return the ratios (..., n - 1) of neighbouring `lengths` (..., n), the longer over the shorter."""
+    ratio = lengths[..., 1:] / lengths[..., :-1]
+    return np.maximum(ratio, 1.0 / ratio)
+
+
 def dots(one: Floats, other: Floats) -> Floats:
     """Return the scalar products (...) of vectors (..., 2 or 3)."""
     total = one[..., 0] * other[..., 0]

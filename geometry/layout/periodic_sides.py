@@ -61,10 +61,18 @@ def matched_nodes(mesh: QuadMesh) -> Floats:
 def _chain(mesh: QuadMesh, after: Indices, stretch: tuple[float, float]) -> Indices:
     """Return the nodes along a stretch of the outer loop, both corners included."""
     begin, end = (_at(mesh, arc) for arc in stretch)
-    chain = [begin]
-    while chain[-1] != end or len(chain) == 1:
-        chain.append(int(after[chain[-1]]))
-    return np.array(chain, dtype=np.intp)
+    return chain(after, begin, end)
+
+
+def chain(after: Indices, begin: int, end: int) -> Indices:
+    """Return the boundary nodes from `begin` to `end`, both included; for `after` see `following`.
+
+    If `end` is `begin`, it is the whole loop, with this node twice.
+    """
+    nodes = [begin]
+    while nodes[-1] != end or len(nodes) == 1:
+        nodes.append(int(after[nodes[-1]]))
+    return np.array(nodes, dtype=np.intp)
 
 
 def _at(mesh: QuadMesh, arc: float) -> int:

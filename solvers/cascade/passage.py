@@ -21,7 +21,7 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.periodic import Periodic
 from meshonet.geometry.elementary import product, times
 from meshonet.geometry.layout.layout import Layout
-from meshonet.geometry.layout.periodic_sides import following
+from meshonet.geometry.layout.periodic_sides import chain, following
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.layers.attach import Rows, attach
 
@@ -173,12 +173,9 @@ def extended(layout: Layout, passage: Passage, wall: Loop, rows: Sequence[Rows])
 
 def _lower_side(mesh: QuadMesh) -> Indices:
     """Return the nodes (k,) on the lower periodic boundary of a passage, from inlet to outlet."""
-    after, loop = following(mesh), mesh.places.loop
     lower = mesh.places.partner[mesh.places.partner >= 0]
-    chain = [int(lower[loop[lower] == INLET][0])]
-    while loop[chain[-1]] != OUTLET:
-        chain.append(int(after[chain[-1]]))
-    return np.array(chain, dtype=np.intp)
+    begin, end = (int(lower[mesh.places.loop[lower] == number][0]) for number in (INLET, OUTLET))
+    return chain(following(mesh), begin, end)
 
 
 def _closed(layout: Layout, passage: Passage, lower: Indices, upper: Indices) -> Layout:

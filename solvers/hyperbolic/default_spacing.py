@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, growth_ratios, norms
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
@@ -49,9 +49,8 @@ def is_abrupt(boundary: Boundary, height: float, growth: float | None, nodes: Fl
     """
     if boundary.topology == "c" or height <= CHECKED * boundary.chord:
         return False
-    cells = norms(np.diff(nodes, axis=1))
-    ratios = cells[:, 1:] / np.maximum(cells[:, :-1], 1e-300)
-    return bool(max(ratios.max(), 1.0 / max(ratios.min(), 1e-300)) > ABRUPT * (growth or 1.0))
+    cells = np.maximum(norms(np.diff(nodes, axis=1)), 1e-300)
+    return bool(growth_ratios(cells).max() > ABRUPT * (growth or 1.0))
 
 
 def _smallest(boundary: Boundary) -> float:

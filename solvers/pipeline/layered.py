@@ -57,17 +57,25 @@ class Layered(Wrapper):
         heights = heights_of(self.request, boundary)
         if self.request.at_walls and boundary.topology in self.marched:
             refuse(self.request.chosen, MARCHED)
-            marched = self.request.method == "hyperbolic"
-            if marched or not too_tall(boundary, heights.south):
-                solution, growth = self._march(boundary), self.request.growth
-                if marched or not is_abrupt(boundary, heights.south, growth, solution.grid.nodes):
-                    return solution
+            solution = self._marched(boundary, heights.south)
+            if solution is not None:
+                return solution
             check_layers(self.request.height() or 0.0, self.request.growth)
         elif heights.any and self.request.refine:
             raise InputError("{refine} with first cells of given heights", "use a finer {res} instead")
         if not heights.any and not self.request.slide:
             return self._even(boundary, heights, start)
         return self._in_layers(boundary, heights, start)
+
+    def _marched(self, boundary: Boundary, height: float) -> Solution | None:
+        """Return the marched grid; None if marched lines do not suit first cells of this `height`."""
+        if self.request.method == "hyperbolic":
+            return self._march(boundary)
+        if too_tall(boundary, height):
+            return None
+        solution = self._march(boundary)
+        abrupt = is_abrupt(boundary, height, self.request.growth, solution.grid.nodes)
+        return None if abrupt else solution
 
     def _march(self, boundary: Boundary) -> Solution:
         height, of_heights = self.request.height() or 0.0, y_plus_notes(self.request, boundary)

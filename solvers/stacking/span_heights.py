@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices
+from meshonet.geometry.arrays import Floats, Indices, growth_ratios
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.along_curve import on_corners
 from meshonet.geometry.spacing.tanh_law import TanhLaw
@@ -55,9 +55,7 @@ def _moved(cells: list[int], source: int, target: int) -> list[int]:
 
 def growth_at(heights: Floats) -> Floats:
     """Return the ratio (n - 2,), 1 or more, of the two cells at each inner node of `heights` (n,)."""
-    steps = np.diff(heights)
-    ratio = steps[1:] / steps[:-1]
-    return np.maximum(ratio, 1.0 / ratio)
+    return growth_ratios(np.diff(heights))
 
 
 def largest_growth(heights: Floats) -> float:

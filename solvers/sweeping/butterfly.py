@@ -10,7 +10,7 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, growth_ratios, norms
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
@@ -116,9 +116,7 @@ def _counts(lines: Sequence[tuple[Floats, Floats, float | None]], growth: float)
 
 def _side_ratio(sides: Sides) -> float:
     """Return the largest growth along the sides of a core."""
-    steps = np.stack([norms(np.diff(side, axis=0)) for side in sides])
-    ratio = steps[:, 1:] / steps[:, :-1]
-    return float(np.maximum(ratio, 1.0 / ratio).max())
+    return float(growth_ratios(np.stack([norms(np.diff(side, axis=0)) for side in sides])).max())
 
 
 def filled(section: CrossSection, plan: FiveBlocks) -> Grid:

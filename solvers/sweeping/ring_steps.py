@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, growth_ratios
 from meshonet.geometry.elementary import exp
 from meshonet.geometry.spacing.growth import LARGEST
 
@@ -58,6 +58,4 @@ def largest_ratio(lengths: Floats, sizes: Floats, steps: Floats) -> float:
     """
     if np.abs(steps.sum(axis=1) - lengths).max() > _CLOSE * lengths.max():
         return math.inf
-    every = np.concatenate([steps, sizes[:, None]], axis=1)
-    ratio = every[:, 1:] / every[:, :-1]
-    return float(np.maximum(ratio, 1.0 / ratio).max())
+    return float(growth_ratios(np.concatenate([steps, sizes[:, None]], axis=1)).max())

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, growth_ratios, norms
 from meshonet.geometry.elementary import log
 from meshonet.geometry.threads import MANY_VISITS, threads_for
 from meshonet.kernels._native import limit_line_growth
@@ -22,8 +22,7 @@ def growth_of_levels(lines: Floats) -> Floats:
     largest = np.ones(lines.shape[2] - 2)
     for k in range(0, lines.shape[1], _TOGETHER):
         steps = norms(np.moveaxis(np.diff(lines[:, k : k + _TOGETHER], axis=2), 0, -1))
-        ratio = steps[:, 1:] / steps[:, :-1]
-        np.maximum(largest, np.maximum(ratio, 1.0 / ratio).max(axis=0), out=largest)
+        np.maximum(largest, growth_ratios(steps).max(axis=0), out=largest)
     return largest
 
 
